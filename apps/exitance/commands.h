@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// One file per subcommand; each adds itself to the command line.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace exitance::cli {
+
+void add_info(CLI::App& app);
+void add_prorad(CLI::App& app);
+void add_probe(CLI::App& app);
+void add_render(CLI::App& app);
+void add_solve(CLI::App& app);
+
+}  // namespace exitance::cli

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/run/options.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "exitance/run/error.h"
+
+namespace exitance {
+
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+    using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+[[noreturn]] void refuse(const Option& option, const std::string& text) {
+    const std::string range = option.range_text();
+    throw Error(Fault::wrong_use, fmt::format("--{}: '{}' is not allowed, expected {}", option.name,
+                                              text, range.empty() ? "a value" : range));
+}
+
+double parse_number(const Option& option, const std::string& text) {
+    double value = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, failure] = std::from_chars(text.data(), end, value);
+    if (failure != std::errc{} || rest != end || !std::isfinite(value)) refuse(option, text);
+    return value;
+}
+
+template <class Integer>
+Integer parse_integer(const Option& option, const std::string& text) {
+    Integer value = 0;
+    const char* end = text.data() + text.size();
+    const auto [rest, failure] = std::from_chars(text.data(), end, value);
+    if (failure != std::errc{} || rest != end) refuse(option, text);
+    return value;
+}
+
+const std::string& one_of_choices(const Option& option, const std::string& text) {
+    for (const std::string& choice : option.choices)
+        if (choice == text) return text;
+    if (!option.choices.empty()) refuse(option, text);
+    return text;
+}
+
+}  // namespace
+
+std::string Option::value_text() const {
+    return std::visit(
+        Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
+                   [](const int* v) { return std::to_string(*v); },
+                   [](const std::uint64_t* v) { return std::to_string(*v); },
+                   [](const double* v) { return fmt::format("{:g}", *v); },
+                   [](const std::optional<double>* v) { return *v ? fmt::format("{:g}", **v) : ""; },
+                   [](const std::string* v) { return *v; },
+                   [](const std::optional<std::string>* v) { return v->value_or(""); }},
+        target);
+}
+
+std::string Option::range_text() const {
+    if (!choices.empty()) return fmt::format("one of {}", fmt::join(choices, ", "));
+    if (is_flag()) return "true or false";
+    const bool low = std::isfinite(least), high = std::isfinite(most);
+    if (low && high) return fmt::format("{:g} … {:g}", least, most);
+    if (low) return fmt::format("at least {:g}", least);
+    if (high) return fmt::format("at most {:g}", most);
+    const bool text = std::holds_alternative<std::string*>(target) ||
+                      std::holds_alternative<std::optional<std::string>*>(target);
+    return text ? "" : "a number";
+}
+
+void Option::check(double value) const {
+    if (!std::isfinite(value) || value < least || value > most)
+        refuse(*this, fmt::format("{:g}", value));
+}
+
+void Option::set(const std::string& text) const {
+    const auto number = [&] {
+        const double value = parse_number(*this, text);
+        check(value);
+        return value;
+    };
+    const auto integer = [&]<class Integer>(Integer* v) {
+        const Integer value = parse_integer<Integer>(*this, text);
+        check(static_cast<double>(value));
+        *v = value;
+    };
+    std::visit(Overloaded{[&](bool* v) {
+                              if (text != "true" && text != "false") refuse(*this, text);
+                              *v = text == "true";
+                          },
+                          [&](int* v) { integer(v); },
+                          [&](std::uint64_t* v) { integer(v); },
+                          [&](double* v) { *v = number(); },
+                          [&](std::optional<double>* v) { *v = number(); },
+                          [&](std::string* v) { *v = one_of_choices(*this, text); },
+                          [&](std::optional<std::string>* v) { *v = one_of_choices(*this, text); }},
+               target);
+}
+
+const Option& find_option(const Options& options, const std::string& name) {
+    std::vector<std::string> names;
+    for (const Option& option : options) {
+        if (option.name == name) return option;
+        names.push_back(option.name);
+    }
+    throw Error(Fault::wrong_use,
+                fmt::format("unknown option '{}'{}", name, suggestion(name, names)));
+}
+
+}  // namespace exitance

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/scene/groups.h"
+
+#include <algorithm>
+
+namespace exitance {
+
+namespace {
+
+std::string group_name(const Scene& scene, const Surface& surface, Grouping grouping) {
+    const Material& material = scene.materials[surface.material];
+    switch (grouping) {
+        case Grouping::none: return "all";
+        case Grouping::luminaire: return surface.name.empty() ? material.name : surface.name;
+        case Grouping::material: return material.name;
+        case Grouping::file: return material.group.empty() ? "light" : material.group;
+    }
+    return "all";
+}
+
+}  // namespace
+
+LightGroups make_groups(const Scene& scene, Grouping grouping) {
+    LightGroups out;
+    out.group_of_surface.assign(scene.surfaces.size(), 0);
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+        if (!scene.materials[scene.surfaces[s].material].emits()) continue;
+        const std::string name = group_name(scene, scene.surfaces[s], grouping);
+        auto found = std::find_if(out.groups.begin(), out.groups.end(),
+                                  [&](const LightGroup& g) { return g.name == name; });
+        if (found == out.groups.end()) found = out.groups.insert(found, LightGroup{name, 1.0});
+        out.group_of_surface[s] = static_cast<std::uint32_t>(found - out.groups.begin());
+    }
+    if (out.groups.empty()) out.groups.push_back({"all", 1.0});
+    return out;
+}
+
+}  // namespace exitance

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/scene/scene.h"
+
+#include <algorithm>
+
+#include "exitance/math/polygon.h"
+
+namespace exitance {
+
+std::string exitance_unit(Quantity quantity) {
+    switch (quantity) {
+        case Quantity::unitless: return "";
+        case Quantity::radiometric: return "W/m²";
+        case Quantity::photometric: return "lm/m²";
+    }
+    return "";
+}
+
+std::string irradiance_unit(Quantity quantity) {
+    return quantity == Quantity::photometric ? "lx" : exitance_unit(quantity);
+}
+
+std::string flux_unit(Quantity quantity) {
+    switch (quantity) {
+        case Quantity::unitless: return "";
+        case Quantity::radiometric: return "W";
+        case Quantity::photometric: return "lm";
+    }
+    return "";
+}
+
+bool Material::emits() const {
+    return std::any_of(exitance.begin(), exitance.end(), [](double e) { return e > 0; });
+}
+
+std::array<Vec3, 4> Scene::corners(const Polygon& polygon) const {
+    std::array<Vec3, 4> out;
+    for (std::uint32_t i = 0; i < polygon.size(); ++i) out[i] = points[polygon.corners[i]];
+    return out;
+}
+
+double Scene::area(const Polygon& polygon) const {
+    return exitance::area(std::span(corners(polygon)).first(polygon.size()));
+}
+
+Vec3 Scene::normal(const Polygon& polygon) const {
+    return unit_normal(std::span(corners(polygon)).first(polygon.size()));
+}
+
+Box Scene::bounds() const {
+    Box box;
+    for (const Polygon& polygon : polygons)
+        for (const std::uint32_t i : polygon.indices()) box.add(points[i]);
+    return box;
+}
+
+std::uint32_t Scene::add_point(const Vec3& point, const Vec3& normal) {
+    points.push_back(point);
+    normals.push_back(normal);
+    return static_cast<std::uint32_t>(points.size() - 1);
+}
+
+std::uint32_t Scene::add_material(Material material) {
+    materials.push_back(std::move(material));
+    return static_cast<std::uint32_t>(materials.size() - 1);
+}
+
+std::uint32_t Scene::add_surface(std::string name, std::uint32_t material) {
+    surfaces.push_back({std::move(name), material});
+    return static_cast<std::uint32_t>(surfaces.size() - 1);
+}
+
+}  // namespace exitance

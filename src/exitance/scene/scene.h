@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is there: polygons in metres, how they reflect, what they emit, who looks.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exitance/math/box.h"
+#include "exitance/math/vector.h"
+#include "exitance/run/error.h"
+#include "exitance/scene/spectrum.h"
+
+namespace exitance {
+
+/// What the emission of a scene, and with it every exitance and irradiance, is measured in.
+enum class Quantity {
+    unitless,     ///< no claim; printed without a unit
+    radiometric,  ///< W/m²
+    photometric   ///< lm/m² = lx
+};
+
+/// Unit of exitance: "W/m²", "lm/m²" or "".
+std::string exitance_unit(Quantity quantity);
+/// Unit of irradiance: "W/m²", "lx" or "".
+std::string irradiance_unit(Quantity quantity);
+/// Unit of flux: "W", "lm" or "".
+std::string flux_unit(Quantity quantity);
+
+/// Diffuse reflection and emission, the same all over a surface.
+struct Material {
+    std::string name;
+    Spectrum reflectance;          ///< per band, 0 … 1
+    Spectrum exitance;             ///< emitted exitance per band [exitance_unit]
+    std::string group;             ///< light group of the emission; "" = chosen by --groups
+    bool two_sided = false;        ///< reflects (and emits) from both sides
+    std::optional<int> reflectance_file;  ///< AFIT `material m`
+    Place place;                   ///< where it was declared
+
+    bool emits() const;
+};
+
+/// A named set of polygons of one material: a glTF primitive, an OBJ group, a luminaire.
+struct Surface {
+    std::string name;
+    std::uint32_t material = 0;
+    bool luminaire = false;  ///< made from a lamp of the project file, a light group of its own
+};
+
+/// Three or four corners, counter-clockwise seen from the front.
+struct Polygon {
+    static constexpr std::uint32_t none = 0xffffffffU;
+
+    std::array<std::uint32_t, 4> corners{none, none, none, none};  ///< into Scene::points
+    std::uint32_t surface = 0;
+    std::uint32_t patches = 0;  ///< number of patches asked for by the file; 0 = by size
+
+    std::uint32_t size() const { return corners[3] == none ? 3 : 4; }
+    std::span<const std::uint32_t> indices() const { return {corners.data(), size()}; }
+};
+
+struct Camera {
+    std::string name = "camera";
+    Vec3 eye{0, 0, 1}, look_at{}, up{0, 1, 0};
+    double fov_y = 45;                 ///< full vertical angle [degrees]
+    std::optional<double> aspect{};    ///< width / height, where the file says
+    std::optional<double> near{}, far{};
+};
+
+/// Points origin + (i + ½)/columns · u + (j + ½)/rows · v, facing `normal`.
+struct SensorGrid {
+    std::string name = "grid";
+    Vec3 origin, u, v, normal;
+    std::uint32_t columns = 1, rows = 1;
+};
+
+/// Something found while reading or checking; never silently dropped.
+struct Problem {
+    Place place;
+    std::string what;
+};
+
+struct Scene {
+    std::string title;
+    Quantity quantity = Quantity::unitless;
+    std::vector<std::string> bands{"R", "G", "B"};
+
+    std::vector<Vec3> points;    ///< [m]
+    std::vector<Vec3> normals;   ///< parallel to `points`: unit shading normal, zero = geometric
+    std::vector<Polygon> polygons;
+    std::vector<Surface> surfaces;
+    std::vector<Material> materials;
+    std::vector<Camera> cameras;
+    std::vector<SensorGrid> grids;
+    std::vector<Problem> warnings;  ///< from the readers
+
+    /// Corners of a polygon; only the first `size()` are meaningful.
+    std::array<Vec3, 4> corners(const Polygon& polygon) const;
+    double area(const Polygon& polygon) const;
+    Vec3 normal(const Polygon& polygon) const;
+    const Material& material(const Polygon& polygon) const {
+        return materials[surfaces[polygon.surface].material];
+    }
+    Box bounds() const;
+
+    std::uint32_t add_point(const Vec3& point, const Vec3& normal = {});
+    std::uint32_t add_material(Material material);
+    std::uint32_t add_surface(std::string name, std::uint32_t material);
+};
+
+}  // namespace exitance

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who sees whom: Embree over triangles, in packets of 16 where there are many rays.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "exitance/math/vector.h"
+
+namespace exitance {
+
+struct RayHit {
+    std::uint32_t primitive = 0;  ///< index of the triangle or quad that was given
+    float distance = 0;           ///< in lengths of the direction
+    float u = 0, v = 0;           ///< Embree's coordinates on the primitive
+    Vec3f geometric_normal;       ///< not unit length, right-hand rule over the corners
+};
+
+/// Sixteen rays side by side, as Embree takes them. `active` is a bit mask.
+struct alignas(64) RayPacket {
+    static constexpr std::size_t width = 16;
+    std::array<float, width> origin_x, origin_y, origin_z, near;
+    std::array<float, width> direction_x, direction_y, direction_z, far;
+    std::uint32_t active = 0;
+};
+
+/// Polygons that block light. Threads may query one caster at once.
+class RayCaster {
+  public:
+    using Face = std::array<std::uint32_t, 4>;  ///< corners; the last two equal for a triangle
+
+    /// `faces` index `points`; positions are stored in float relative to the middle of the scene.
+    /// Throws Error(could_not_finish) when Embree runs out of memory.
+    RayCaster(std::span<const Vec3> points, std::span<const Face> faces);
+    ~RayCaster();
+    RayCaster(RayCaster&&) noexcept;
+    RayCaster& operator=(RayCaster&&) noexcept;
+
+    /// Offset that keeps a ray clear of the surface it starts on [m]: a few float steps of the scene.
+    double clearance() const;
+    /// What the packets' origins are relative to; subtract it before conversion to float.
+    Vec3 middle() const;
+
+    /// Bit i set: ray i is blocked strictly between near and far.
+    std::uint32_t occluded(const RayPacket& rays) const;
+    bool occluded(const Vec3& from, const Vec3& to) const;
+    /// The nearest primitive on the ray from `origin` along `direction`, within (near, far).
+    std::optional<RayHit> closest(const Vec3& origin, const Vec3& direction, double near,
+                                  double far) const;
+    /// Nearest hits of a packet: primitive index (none = 0xffffffff), distance, and whether the
+    /// front was hit (direction against the geometric normal).
+    struct PacketHits {
+        std::array<std::uint32_t, RayPacket::width> primitive;
+        std::array<float, RayPacket::width> distance, u, v;
+        std::uint32_t front = 0;  ///< bit mask
+    };
+    void closest(const RayPacket& rays, PacketHits& hits) const;
+
+  private:
+    struct Embree;
+    std::unique_ptr<Embree> embree_;
+    Vec3 middle_;
+    double clearance_ = 0;
+};
+
+}  // namespace exitance
