@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/visibility/ray_caster.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "exitance/math/box.h"
+#include "exitance/run/error.h"
+
+namespace exitance {
+
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+void check(RTCDevice device, const char* doing) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error != RTC_ERROR_NONE)
+        throw Error(Fault::could_not_finish,
+                    std::string("Embree failed while ") + doing +
+                        (error == RTC_ERROR_OUT_OF_MEMORY ? ": out of memory" : ""));
+}
+
+void fill(RTCRay16& ray, const RayPacket& rays) {
+    std::memcpy(ray.org_x, rays.origin_x.data(), sizeof ray.org_x);
+    std::memcpy(ray.org_y, rays.origin_y.data(), sizeof ray.org_y);
+    std::memcpy(ray.org_z, rays.origin_z.data(), sizeof ray.org_z);
+    std::memcpy(ray.tnear, rays.near.data(), sizeof ray.tnear);
+    std::memcpy(ray.dir_x, rays.direction_x.data(), sizeof ray.dir_x);
+    std::memcpy(ray.dir_y, rays.direction_y.data(), sizeof ray.dir_y);
+    std::memcpy(ray.dir_z, rays.direction_z.data(), sizeof ray.dir_z);
+    std::memcpy(ray.tfar, rays.far.data(), sizeof ray.tfar);
+    std::fill_n(ray.time, RayPacket::width, 0.0f);
+    std::fill_n(ray.mask, RayPacket::width, ~0u);
+    std::fill_n(ray.flags, RayPacket::width, 0u);
+}
+
+struct alignas(64) LaneMask {
+    std::array<int, RayPacket::width> lanes;
+
+    explicit LaneMask(std::uint32_t active) {
+        for (std::size_t i = 0; i < RayPacket::width; ++i) lanes[i] = (active >> i & 1u) ? -1 : 0;
+    }
+};
+
+}  // namespace
+
+struct RayCaster::Embree {
+    RTCDevice device = rtcNewDevice(nullptr);
+    RTCScene scene = nullptr;
+
+    Embree() {
+        if (!device) throw Error(Fault::could_not_finish, "Embree could not start");
+        scene = rtcNewScene(device);
+    }
+    ~Embree() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+    Embree(const Embree&) = delete;
+    Embree& operator=(const Embree&) = delete;
+};
+
+RayCaster::RayCaster(std::span<const Vec3> points, std::span<const Face> faces)
+    : embree_(std::make_unique<Embree>()) {
+    Box box;
+    for (const Face& face : faces)
+        for (const std::uint32_t corner : face) box.add(points[corner]);
+    middle_ = box.empty() ? Vec3{} : box.centre();
+    // Coordinates relative to the middle have float steps of at most 2⁻²⁵ of the diagonal; ray
+    // origins, hit distances and triangles each add a few of them.
+    clearance_ = std::max(box.diagonal(), 1e-30) * 0x1.0p-19;
+
+    RTCGeometry geometry = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_QUAD);
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), std::max<std::size_t>(1, points.size())));
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT4,
+                                4 * sizeof(std::uint32_t), std::max<std::size_t>(1, faces.size())));
+    check(embree_->device, "making room for the scene");
+    std::fill_n(vertices, 3, 0.0f);
+    for (std::size_t i = 0; i < points.size(); ++i)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            vertices[3 * i + axis] = static_cast<float>(points[i][axis] - middle_[axis]);
+    std::fill_n(indices, 4, 0u);
+    for (std::size_t i = 0; i < faces.size(); ++i)
+        std::copy(faces[i].begin(), faces[i].end(), indices + 4 * i);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(embree_->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    // Robust: no ray slips between two faces that share an edge.
+    rtcSetSceneFlags(embree_->scene, RTC_SCENE_FLAG_ROBUST);
+    rtcCommitScene(embree_->scene);
+    check(embree_->device, "building its hierarchy");
+}
+
+RayCaster::~RayCaster() = default;
+RayCaster::RayCaster(RayCaster&&) noexcept = default;
+RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
+
+double RayCaster::clearance() const { return clearance_; }
+Vec3 RayCaster::middle() const { return middle_; }
+
+std::uint32_t RayCaster::occluded(const RayPacket& rays) const {
+    RTCRay16 ray;
+    fill(ray, rays);
+    const LaneMask mask(rays.active);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded16(mask.lanes.data(), embree_->scene, &context, &ray);
+    std::uint32_t blocked = 0;
+    for (std::size_t i = 0; i < RayPacket::width; ++i)
+        blocked |= (ray.tfar[i] == -infinity ? 1u : 0u) << i;
+    return blocked & rays.active;
+}
+
+bool RayCaster::occluded(const Vec3& from, const Vec3& to) const {
+    const Vec3f origin(from - middle_), direction(to - from);
+    RTCRay ray{};
+    ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
+    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
+    ray.tnear = 0, ray.tfar = 1, ray.mask = ~0u;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(embree_->scene, &context, &ray);
+    return ray.tfar < 0;
+}
+
+std::optional<RayHit> RayCaster::closest(const Vec3& origin, const Vec3& direction, double near,
+                                         double far) const {
+    const Vec3f o(origin - middle_), d(direction);
+    RTCRayHit query{};
+    query.ray.org_x = o.x, query.ray.org_y = o.y, query.ray.org_z = o.z;
+    query.ray.dir_x = d.x, query.ray.dir_y = d.y, query.ray.dir_z = d.z;
+    query.ray.tnear = static_cast<float>(near);
+    query.ray.tfar = static_cast<float>(far);
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(embree_->scene, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return RayHit{query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v,
+                  {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
+}
+
+void RayCaster::closest(const RayPacket& rays, PacketHits& hits) const {
+    RTCRayHit16 query;
+    fill(query.ray, rays);
+    std::fill_n(query.hit.geomID, RayPacket::width, RTC_INVALID_GEOMETRY_ID);
+    std::fill_n(query.hit.instID[0], RayPacket::width, RTC_INVALID_GEOMETRY_ID);
+    const LaneMask mask(rays.active);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect16(mask.lanes.data(), embree_->scene, &context, &query);
+    hits.front = 0;
+    for (std::size_t i = 0; i < RayPacket::width; ++i) {
+        const bool hit = (rays.active >> i & 1u) && query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+        hits.primitive[i] = hit ? query.hit.primID[i] : 0xffffffffu;
+        hits.distance[i] = query.ray.tfar[i];
+        hits.u[i] = query.hit.u[i];
+        hits.v[i] = query.hit.v[i];
+        const float facing = query.hit.Ng_x[i] * rays.direction_x[i] +
+                             query.hit.Ng_y[i] * rays.direction_y[i] +
+                             query.hit.Ng_z[i] * rays.direction_z[i];
+        hits.front |= (hit && facing < 0 ? 1u : 0u) << i;
+    }
+}
+
+}  // namespace exitance
