@@ -18,9 +18,7 @@ struct Frame {
         bitangent = {b, sign + normal.y * normal.y * a, -normal.y};
     }
 
-    Vec3 to_world(const Vec3& v) const {
-        return tangent * v.x + bitangent * v.y + normal * v.z;
-    }
+    Vec3 to_world(const Vec3& v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
 };
 
 }  // namespace exitance

@@ -16,9 +16,13 @@ inline Vec3 vector_area(std::span<const Vec3> corners) {
     return sum * 0.5;
 }
 
-inline double area(std::span<const Vec3> corners) { return length(vector_area(corners)); }
+inline double area(std::span<const Vec3> corners) {
+    return length(vector_area(corners));
+}
 
-inline Vec3 unit_normal(std::span<const Vec3> corners) { return normalized(vector_area(corners)); }
+inline Vec3 unit_normal(std::span<const Vec3> corners) {
+    return normalized(vector_area(corners));
+}
 
 /// Mean of the corners.
 inline Vec3 centroid(std::span<const Vec3> corners) {

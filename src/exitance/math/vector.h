@@ -32,9 +32,13 @@ struct Vector3 {
         return {a.x - b.x, a.y - b.y, a.z - b.z};
     }
     friend constexpr Vector3 operator-(const Vector3& a) { return {-a.x, -a.y, -a.z}; }
-    friend constexpr Vector3 operator*(const Vector3& a, T s) { return {a.x * s, a.y * s, a.z * s}; }
+    friend constexpr Vector3 operator*(const Vector3& a, T s) {
+        return {a.x * s, a.y * s, a.z * s};
+    }
     friend constexpr Vector3 operator*(T s, const Vector3& a) { return a * s; }
-    friend constexpr Vector3 operator/(const Vector3& a, T s) { return {a.x / s, a.y / s, a.z / s}; }
+    friend constexpr Vector3 operator/(const Vector3& a, T s) {
+        return {a.x / s, a.y / s, a.z / s};
+    }
     friend constexpr bool operator==(const Vector3&, const Vector3&) = default;
 };
 

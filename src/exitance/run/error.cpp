@@ -22,9 +22,12 @@ Error::Error(const Place& place, const std::string& message)
 
 int Error::exit_code() const {
     switch (fault_) {
-        case Fault::wrong_use: return 2;
-        case Fault::bad_input: return 3;
-        case Fault::could_not_finish: return 4;
+        case Fault::wrong_use:
+            return 2;
+        case Fault::bad_input:
+            return 3;
+        case Fault::could_not_finish:
+            return 4;
     }
     return 4;
 }
@@ -49,8 +52,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string suggestion(const std::string& word, const std::string* first,
-                       const std::string* last) {
+std::string suggestion(const std::string& word, const std::string* first, const std::string* last) {
     const std::string* best = nullptr;
     std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
     for (; first != last; ++first) {

@@ -36,7 +36,8 @@ class Error : public std::runtime_error {
     Fault fault_;
 };
 
-/// The candidate closest to `word` by edit distance, as ", did you mean 'x'?"; empty if none is near.
+/// The candidate closest to `word` by edit distance, as ", did you mean 'x'?"; empty if none is
+/// near.
 std::string suggestion(const std::string& word, const std::string* first, const std::string* last);
 
 template <class Container>

@@ -53,13 +53,14 @@ const std::string& one_of_choices(const Option& option, const std::string& text)
 
 std::string Option::value_text() const {
     return std::visit(
-        Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
-                   [](const int* v) { return std::to_string(*v); },
-                   [](const std::uint64_t* v) { return std::to_string(*v); },
-                   [](const double* v) { return fmt::format("{:g}", *v); },
-                   [](const std::optional<double>* v) { return *v ? fmt::format("{:g}", **v) : ""; },
-                   [](const std::string* v) { return *v; },
-                   [](const std::optional<std::string>* v) { return v->value_or(""); }},
+        Overloaded{
+            [](const bool* v) { return std::string(*v ? "true" : "false"); },
+            [](const int* v) { return std::to_string(*v); },
+            [](const std::uint64_t* v) { return std::to_string(*v); },
+            [](const double* v) { return fmt::format("{:g}", *v); },
+            [](const std::optional<double>* v) { return *v ? fmt::format("{:g}", **v) : ""; },
+            [](const std::string* v) { return *v; },
+            [](const std::optional<std::string>* v) { return v->value_or(""); }},
         target);
 }
 
@@ -95,8 +96,7 @@ void Option::set(const std::string& text) const {
                               if (text != "true" && text != "false") refuse(*this, text);
                               *v = text == "true";
                           },
-                          [&](int* v) { integer(v); },
-                          [&](std::uint64_t* v) { integer(v); },
+                          [&](int* v) { integer(v); }, [&](std::uint64_t* v) { integer(v); },
                           [&](double* v) { *v = number(); },
                           [&](std::optional<double>* v) { *v = number(); },
                           [&](std::string* v) { *v = one_of_choices(*this, text); },

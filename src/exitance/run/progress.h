@@ -13,13 +13,13 @@ namespace exitance {
 
 /// One report of a long computation; `fraction_left` falls from 1 to 0 and comes from the residual.
 struct Progress {
-    std::string phase;             ///< what is being done: "direct", "shooting", "estimate"
-    double seconds = 0;            ///< since the work began
-    double fraction_left = 1;      ///< unshot energy / emitted energy, or work left / all work
+    std::string phase;         ///< what is being done: "direct", "shooting", "estimate"
+    double seconds = 0;        ///< since the work began
+    double fraction_left = 1;  ///< unshot energy / emitted energy, or work left / all work
     std::uint64_t shots = 0;
-    std::uint64_t rays = 0;        ///< visibility rays so far
+    std::uint64_t rays = 0;  ///< visibility rays so far
     std::uint64_t vertices = 0;
-    std::optional<double> error;   ///< RMS relative error of irradiance, once estimated
+    std::optional<double> error;  ///< RMS relative error of irradiance, once estimated
 };
 
 using Observer = std::function<void(const Progress&)>;

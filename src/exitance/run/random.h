@@ -20,7 +20,8 @@ constexpr std::uint64_t hash_bits(std::uint64_t x) {
 /// One number from several, for use as the key of a stream.
 template <class... Rest>
 constexpr std::uint64_t hash_bits(std::uint64_t first, Rest... rest) {
-    return hash_bits(first ^ (hash_bits(static_cast<std::uint64_t>(rest)...) * 0x9ddfea08eb382d69ULL));
+    return hash_bits(first ^
+                     (hash_bits(static_cast<std::uint64_t>(rest)...) * 0x9ddfea08eb382d69ULL));
 }
 
 /// Top 53 bits as a double in [0, 1).
@@ -67,8 +68,9 @@ constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
     return reverse_bits(x);
 }
 
-/// Point `index` of the Owen-scrambled Sobol' sequence of the stream `key`, in [0, 1)². Every prefix
-/// whose length is a power of two is stratified, so that sampling may stop early without bias.
+/// Point `index` of the Owen-scrambled Sobol' sequence of the stream `key`, in [0, 1)². Every
+/// prefix whose length is a power of two is stratified, so that sampling may stop early without
+/// bias.
 constexpr std::array<double, 2> low_discrepancy(std::uint64_t key, std::uint32_t index) {
     const auto [x, y] = sobol(index);
     return {owen_scramble(x, static_cast<std::uint32_t>(key)) * 0x1.0p-32,

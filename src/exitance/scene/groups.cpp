@@ -10,10 +10,14 @@ namespace {
 std::string group_name(const Scene& scene, const Surface& surface, Grouping grouping) {
     const Material& material = scene.materials[surface.material];
     switch (grouping) {
-        case Grouping::none: return "all";
-        case Grouping::luminaire: return surface.name.empty() ? material.name : surface.name;
-        case Grouping::material: return material.name;
-        case Grouping::file: return material.group.empty() ? "light" : material.group;
+        case Grouping::none:
+            return "all";
+        case Grouping::luminaire:
+            return surface.name.empty() ? material.name : surface.name;
+        case Grouping::material:
+            return material.name;
+        case Grouping::file:
+            return material.group.empty() ? "light" : material.group;
     }
     return "all";
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light groups: sets of emitters that can be dimmed together after the solve, because light is linear.
+// Light groups: sets of emitters that can be dimmed together after the solve, because light is
+// linear.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@ enum class Grouping {
 };
 
 struct LightGroups {
-    std::vector<LightGroup> groups;                ///< at least one
-    std::vector<std::uint32_t> group_of_surface;   ///< per Scene surface; 0 for what does not emit
+    std::vector<LightGroup> groups;               ///< at least one
+    std::vector<std::uint32_t> group_of_surface;  ///< per Scene surface; 0 for what does not emit
 };
 
 /// Groups in order of first appearance among the surfaces.

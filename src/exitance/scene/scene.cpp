@@ -9,9 +9,12 @@ namespace exitance {
 
 std::string exitance_unit(Quantity quantity) {
     switch (quantity) {
-        case Quantity::unitless: return "";
-        case Quantity::radiometric: return "W/m²";
-        case Quantity::photometric: return "lm/m²";
+        case Quantity::unitless:
+            return "";
+        case Quantity::radiometric:
+            return "W/m²";
+        case Quantity::photometric:
+            return "lm/m²";
     }
     return "";
 }
@@ -22,9 +25,12 @@ std::string irradiance_unit(Quantity quantity) {
 
 std::string flux_unit(Quantity quantity) {
     switch (quantity) {
-        case Quantity::unitless: return "";
-        case Quantity::radiometric: return "W";
-        case Quantity::photometric: return "lm";
+        case Quantity::unitless:
+            return "";
+        case Quantity::radiometric:
+            return "W";
+        case Quantity::photometric:
+            return "lm";
     }
     return "";
 }
@@ -40,11 +46,13 @@ std::array<Vec3, 4> Scene::corners(const Polygon& polygon) const {
 }
 
 double Scene::area(const Polygon& polygon) const {
-    return exitance::area(std::span(corners(polygon)).first(polygon.size()));
+    const auto c = corners(polygon);
+    return exitance::area({c.data(), polygon.size()});
 }
 
 Vec3 Scene::normal(const Polygon& polygon) const {
-    return unit_normal(std::span(corners(polygon)).first(polygon.size()));
+    const auto c = corners(polygon);
+    return unit_normal({c.data(), polygon.size()});
 }
 
 Box Scene::bounds() const {

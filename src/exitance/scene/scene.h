@@ -33,12 +33,12 @@ std::string flux_unit(Quantity quantity);
 /// Diffuse reflection and emission, the same all over a surface.
 struct Material {
     std::string name;
-    Spectrum reflectance;          ///< per band, 0 … 1
-    Spectrum exitance;             ///< emitted exitance per band [exitance_unit]
-    std::string group;             ///< light group of the emission; "" = chosen by --groups
-    bool two_sided = false;        ///< reflects (and emits) from both sides
+    Spectrum reflectance;                 ///< per band, 0 … 1
+    Spectrum exitance;                    ///< emitted exitance per band [exitance_unit]
+    std::string group;                    ///< light group of the emission; "" = chosen by --groups
+    bool two_sided = false;               ///< reflects (and emits) from both sides
     std::optional<int> reflectance_file;  ///< AFIT `material m`
-    Place place;                   ///< where it was declared
+    Place place;                          ///< where it was declared
 
     bool emits() const;
 };
@@ -65,8 +65,8 @@ struct Polygon {
 struct Camera {
     std::string name = "camera";
     Vec3 eye{0, 0, 1}, look_at{}, up{0, 1, 0};
-    double fov_y = 45;                 ///< full vertical angle [degrees]
-    std::optional<double> aspect{};    ///< width / height, where the file says
+    double fov_y = 45;               ///< full vertical angle [degrees]
+    std::optional<double> aspect{};  ///< width / height, where the file says
     std::optional<double> near{}, far{};
 };
 
@@ -88,8 +88,8 @@ struct Scene {
     Quantity quantity = Quantity::unitless;
     std::vector<std::string> bands{"R", "G", "B"};
 
-    std::vector<Vec3> points;    ///< [m]
-    std::vector<Vec3> normals;   ///< parallel to `points`: unit shading normal, zero = geometric
+    std::vector<Vec3> points;   ///< [m]
+    std::vector<Vec3> normals;  ///< parallel to `points`: unit shading normal, zero = geometric
     std::vector<Polygon> polygons;
     std::vector<Surface> surfaces;
     std::vector<Material> materials;

@@ -21,10 +21,10 @@ namespace exitance {
 /// Where the light went, summed over all columns weighted by luminance [flux_unit of the scene].
 struct EnergyBalance {
     double emitted = 0;
-    double absorbed = 0;        ///< by front sides: (1 − ρ) E over the mesh
-    double absorbed_behind = 0; ///< by the black backs of one-sided surfaces
-    double escaped = 0;         ///< left the scene
-    double unshot = 0;          ///< still to be distributed when the solver stopped
+    double absorbed = 0;         ///< by front sides: (1 − ρ) E over the mesh
+    double absorbed_behind = 0;  ///< by the black backs of one-sided surfaces
+    double escaped = 0;          ///< left the scene
+    double unshot = 0;           ///< still to be distributed when the solver stopped
 
     /// (emitted − all the rest) / emitted; 0 if nothing is emitted.
     double imbalance() const {

@@ -104,8 +104,12 @@ RayCaster::~RayCaster() = default;
 RayCaster::RayCaster(RayCaster&&) noexcept = default;
 RayCaster& RayCaster::operator=(RayCaster&&) noexcept = default;
 
-double RayCaster::clearance() const { return clearance_; }
-Vec3 RayCaster::middle() const { return middle_; }
+double RayCaster::clearance() const {
+    return clearance_;
+}
+Vec3 RayCaster::middle() const {
+    return middle_;
+}
 
 std::uint32_t RayCaster::occluded(const RayPacket& rays) const {
     RTCRay16 ray;
@@ -146,7 +150,10 @@ std::optional<RayHit> RayCaster::closest(const Vec3& origin, const Vec3& directi
     rtcInitIntersectContext(&context);
     rtcIntersect1(embree_->scene, &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
-    return RayHit{query.hit.primID, query.ray.tfar, query.hit.u, query.hit.v,
+    return RayHit{query.hit.primID,
+                  query.ray.tfar,
+                  query.hit.u,
+                  query.hit.v,
                   {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z}};
 }
 

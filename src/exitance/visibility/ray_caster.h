@@ -39,7 +39,8 @@ class RayCaster {
     RayCaster(RayCaster&&) noexcept;
     RayCaster& operator=(RayCaster&&) noexcept;
 
-    /// Offset that keeps a ray clear of the surface it starts on [m]: a few float steps of the scene.
+    /// Offset that keeps a ray clear of the surface it starts on [m]: a few float steps of the
+    /// scene.
     double clearance() const;
     /// What the packets' origins are relative to; subtract it before conversion to float.
     Vec3 middle() const;
