@@ -83,6 +83,13 @@ struct Problem {
     std::string what;
 };
 
+/// `key = value` of a project's [solve] table, applied to the solve's options before the command
+/// line.
+struct Setting {
+    std::string name, value;
+    Place place;
+};
+
 struct Scene {
     std::string title;
     Quantity quantity = Quantity::unitless;
@@ -95,6 +102,7 @@ struct Scene {
     std::vector<Material> materials;
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;
+    std::vector<Setting> settings;  ///< from [solve] of a project file
     std::vector<Problem> warnings;  ///< from the readers
 
     /// Corners of a polygon; only the first `size()` are meaningful.
