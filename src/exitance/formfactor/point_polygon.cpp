@@ -28,11 +28,11 @@ double point_polygon_factor(const Vec3& point, const Vec3& normal, std::span<con
         Vec3 a = corners[i] - point, b = corners[(i + 1) % corners.size()] - point;
         const double height_a = dot(a, normal), height_b = dot(b, normal);
         if (height_a <= 0 && height_b <= 0) continue;
-        if (height_a < 0) {
+        if (height_a <= 0) {
             a += (b - a) * (height_a / (height_a - height_b));
             enters = a;
             cut = true;
-        } else if (height_b < 0) {
+        } else if (height_b <= 0) {
             b = a + (b - a) * (height_a / (height_a - height_b));
             leaves = b;
             cut = true;
