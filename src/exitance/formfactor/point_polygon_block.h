@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lambert's formula for many receivers at once (see point_polygon.h), in float, without branches.
+#pragma once
+
+#include "exitance/visibility/receivers.h"
+
+namespace exitance {
+
+/// `factors[r]` = unobstructed factor from receiver r of the block to the source; relative error
+/// below 1e-4 where the factor exceeds 1e-6. `factors` has room for ReceiverBlock::capacity.
+void point_polygon_factors(const ReceiverBlock& receivers, const Source& source, float* factors);
+
+}  // namespace exitance

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/transport/column.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "exitance/formfactor/point_polygon_block.h"
+#include "exitance/run/parallel.h"
+#include "exitance/run/random.h"
+#include "exitance/visibility/visible_fraction.h"
+
+namespace exitance {
+
+namespace {
+
+// Stratified samples of a penumbra miss by about n^-3/4 / 2 of the contribution c (in units of the
+// tolerance): n = (2 c)^4/3 brings that to a quarter of the tolerance. Fainter sources get one ray:
+// their errors are independent and average out over the many of them. A quarter of the rays, at
+// most 16, find out whether there is a penumbra at all.
+RayBudget budget_for(const float* factors, std::size_t size, float brightness) {
+    RayBudget budget;
+    for (std::size_t r = 0; r < size; ++r) {
+        const float contribution = factors[r] * brightness;
+        const float wanted = std::ceil(std::pow(2.0f * contribution, 4.0f / 3.0f));
+        const float most = std::clamp(wanted, 1.0f, 256.0f);
+        budget.most[r] = static_cast<std::uint16_t>(most);
+        budget.probe[r] = factors[r] > 0.0f
+                              ? static_cast<std::uint8_t>(std::clamp(most / 4.0f, 1.0f, 16.0f))
+                              : std::uint8_t{0};
+    }
+    return budget;
+}
+
+}  // namespace
+
+std::uint64_t compute_column(const RayCaster& caster, const Source& source, float brightness,
+                             std::uint32_t number, const Receivers& receivers,
+                             std::span<const std::uint32_t> which, const ColumnOptions& options,
+                             std::span<ColumnEntry> entries) {
+    std::atomic<std::uint64_t> rays{0};
+    const auto seed = static_cast<std::uint32_t>(hash_bits(options.seed, number));
+    parallel_blocks(which.size(), ReceiverBlock::capacity, [&](std::size_t begin, std::size_t end) {
+        ReceiverBlock block;
+        block.load(receivers, &which[begin], end - begin);
+        alignas(64) std::array<float, ReceiverBlock::capacity> factors;
+        point_polygon_factors(block, source, factors.data());
+        for (std::size_t r = 0; r < block.size; ++r) entries[begin + r] = {factors[r], 1.0f};
+        const bool disk = options.factor == PointFactor::disk;
+        if (!options.occlusion && !disk) return;
+
+        RayBudget budget = budget_for(factors.data(), block.size, brightness);
+        if (disk)
+            for (std::size_t r = 0; r < block.size; ++r)
+                if (budget.probe[r])
+                    budget.probe[r] = static_cast<std::uint8_t>(std::min<std::uint16_t>(
+                        budget.most[r], std::uint16_t{255}));
+        VisibleFractions seen;
+        find_visible_fractions(caster, source, block, budget, seed, seen);
+        for (std::size_t r = 0; r < block.size; ++r) {
+            if (!budget.probe[r]) continue;
+            ColumnEntry& entry = entries[begin + r];
+            entry.visible = seen.fraction[r];
+            if (disk && seen.fraction[r] > 0) entry.factor = seen.disk[r] / seen.fraction[r];
+        }
+        rays.fetch_add(seen.rays, std::memory_order_relaxed);
+    });
+    return rays.load();
+}
+
+}  // namespace exitance

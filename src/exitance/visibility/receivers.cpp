@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/visibility/receivers.h"
+
+#include <algorithm>
+
+#include "exitance/math/polygon.h"
+
+namespace exitance {
+
+Source::Source(const std::array<Vec3, 4>& points, std::uint32_t n, const Vec3& middle) : count(n) {
+    const Vec3 a = vector_area({points.data(), n});
+    normal = Vec3f(normalized(a));
+    area = static_cast<float>(length(a));
+    // A triangle repeats its last corner, so that loops over four corners serve both.
+    for (std::uint32_t i = 0; i < 4; ++i) corners[i] = Vec3f(points[std::min(i, n - 1)] - middle);
+}
+
+void ReceiverBlock::load(const Receivers& all, const std::uint32_t* which, std::size_t n) {
+    size = n;
+    const std::size_t padded = (n + 15) / 16 * 16;
+    for (std::size_t i = 0; i < padded; ++i) {
+        const std::uint32_t r = which[std::min(i, n - 1)];
+        x[i] = all.x[r], y[i] = all.y[r], z[i] = all.z[r];
+        nx[i] = all.nx[r], ny[i] = all.ny[r], nz[i] = all.nz[r];
+        key[i] = all.key[r];
+    }
+}
+
+}  // namespace exitance
