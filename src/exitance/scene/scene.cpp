@@ -74,7 +74,7 @@ std::uint32_t Scene::add_material(Material material) {
 }
 
 std::uint32_t Scene::add_surface(std::string name, std::uint32_t material) {
-    surfaces.push_back({std::move(name), material});
+    surfaces.push_back({std::move(name), material, false, {}});
     return static_cast<std::uint32_t>(surfaces.size() - 1);
 }
 

@@ -48,6 +48,7 @@ struct Surface {
     std::string name;
     std::uint32_t material = 0;
     bool luminaire = false;  ///< made from a lamp of the project file, a light group of its own
+    Place place{};           ///< where it was declared
 };
 
 /// Three or four corners, counter-clockwise seen from the front.
@@ -57,6 +58,7 @@ struct Polygon {
     std::array<std::uint32_t, 4> corners{none, none, none, none};  ///< into Scene::points
     std::uint32_t surface = 0;
     std::uint32_t patches = 0;  ///< number of patches asked for by the file; 0 = by size
+    std::uint32_t line = 0;     ///< of the surface's file that declares it; 0 = unknown
 
     std::uint32_t size() const { return corners[3] == none ? 3 : 4; }
     std::span<const std::uint32_t> indices() const { return {corners.data(), size()}; }

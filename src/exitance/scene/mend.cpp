@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/scene/mend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "exitance/math/polygon.h"
+#include "exitance/scene/formats/limits.h"
+
+namespace exitance {
+
+namespace {
+
+// What was done to the polygons of one surface, and where first.
+struct Mended {
+    std::size_t count = 0;
+    std::uint32_t first_line = 0;
+};
+using PerSurface = std::map<std::uint32_t, Mended>;
+
+void note(PerSurface& notes, const Polygon& polygon) {
+    Mended& mended = notes[polygon.surface];
+    if (mended.count++ == 0) mended.first_line = polygon.line;
+}
+
+void warn(Scene& scene, const PerSurface& notes, const char* one, const char* several) {
+    for (const auto& [s, mended] : notes) {
+        Place place = scene.surfaces[s].place;
+        if (mended.first_line > 0) place = {place.file, mended.first_line, 0};
+        scene.warnings.push_back(
+            {place,
+             fmt::format("{} of '{}' {}",
+                         mended.count == 1 ? "a polygon" : fmt::format("{} polygons", mended.count),
+                         scene.surfaces[s].name, mended.count == 1 ? one : several)});
+    }
+}
+
+void check_points(const Scene& scene) {
+    for (const Polygon& polygon : scene.polygons)
+        for (const std::uint32_t i : polygon.indices())
+            for (std::size_t axis = 0; axis < 3; ++axis)
+                if (!(std::abs(scene.points[i][axis]) <= limits::coordinate)) {
+                    const Surface& surface = scene.surfaces[polygon.surface];
+                    throw Error(
+                        {surface.place.file, polygon.line, 0},
+                        fmt::format("found the coordinate {} in '{}', expected at most {:g} m "
+                                    "from the origin",
+                                    scene.points[i][axis], surface.name, limits::coordinate));
+                }
+}
+
+void mend_material(Material& material, std::vector<Problem>& warnings) {
+    for (const double rho : material.reflectance)
+        if (!(rho >= 0 && rho <= 1))
+            throw Error(material.place,
+                        fmt::format("found the reflectance {} in '{}', expected 0 to 1", rho,
+                                    material.name));
+    for (const double e : material.exitance)
+        if (!(e >= 0 && e <= limits::exitance))
+            throw Error(material.place,
+                        fmt::format("found the exitance {} in '{}', expected 0 to {:g}", e,
+                                    material.name, limits::exitance));
+    const double most = *std::max_element(material.reflectance.begin(), material.reflectance.end());
+    if (most <= largest_reflectance) return;
+    warnings.push_back(
+        {material.place,
+         fmt::format(
+             "the reflectance {:g} of '{}' is limited to {}: above it, light hardly dies out", most,
+             material.name, largest_reflectance)});
+    for (double& rho : material.reflectance) rho = std::min(rho, largest_reflectance);
+}
+
+// Corners in order without neighbours at the same place; fewer than three left = no area.
+std::vector<std::uint32_t> distinct_corners(const Scene& scene, const Polygon& polygon) {
+    std::vector<std::uint32_t> kept;
+    for (const std::uint32_t i : polygon.indices())
+        if (kept.empty() || !(scene.points[i] == scene.points[kept.back()])) kept.push_back(i);
+    while (kept.size() > 1 && scene.points[kept.front()] == scene.points[kept.back()])
+        kept.pop_back();
+    return kept;
+}
+
+// Below this share of its diagonal squared an area is rounding.
+bool has_area(double area, double diagonal) {
+    return area > 1e-12 * diagonal * diagonal;
+}
+
+// Which diagonal splits a quad into two triangles that face the same way; 0-2 if both or none do.
+bool split_at_second_corner(const std::array<Vec3, 4>& c) {
+    const auto agree = [](const Vec3& a, const Vec3& b) { return dot(a, b) > 0; };
+    const bool first = agree(cross(c[1] - c[0], c[2] - c[0]), cross(c[2] - c[0], c[3] - c[0]));
+    const bool second = agree(cross(c[2] - c[1], c[3] - c[1]), cross(c[3] - c[1], c[0] - c[1]));
+    return second && !first;
+}
+
+bool is_convex(const std::array<Vec3, 4>& c, const Vec3& normal) {
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3 turn = cross(c[(i + 1) % 4] - c[i], c[(i + 2) % 4] - c[(i + 1) % 4]);
+        if (dot(turn, normal) < 0) return false;
+    }
+    return true;
+}
+
+double diagonal_of(std::span<const Vec3> corners) {
+    Box box;
+    for (const Vec3& c : corners) box.add(c);
+    return box.diagonal();
+}
+
+void mend_polygons(Scene& scene) {
+    const double extent = scene.bounds().diagonal();
+    PerSurface empty, bent, dented;
+    std::vector<Polygon> mended;
+    mended.reserve(scene.polygons.size());
+    const auto add_triangle = [&](const Polygon& of, std::array<std::uint32_t, 3> corners) {
+        Polygon triangle = of;
+        triangle.corners = {corners[0], corners[1], corners[2], Polygon::none};
+        triangle.patches = (of.patches + 1) / 2;
+        const auto c = scene.corners(triangle);
+        const std::span<const Vec3> three(c.data(), 3);
+        if (has_area(area(three), diagonal_of(three))) mended.push_back(triangle);
+    };
+    for (const Polygon& polygon : scene.polygons) {
+        const auto kept = distinct_corners(scene, polygon);
+        Polygon now = polygon;
+        for (std::size_t i = 0; i < 4; ++i)
+            now.corners[i] = i < kept.size() ? kept[i] : Polygon::none;
+        const auto c = scene.corners(now);
+        const std::span<const Vec3> corners(c.data(), kept.size());
+        const double diagonal = diagonal_of(corners);
+        const bool quad = kept.size() == 4;
+        const bool surely_empty = kept.size() < 3 || (!quad && !has_area(area(corners), diagonal));
+        if (surely_empty || (quad && !has_area(length(cross(c[2] - c[0], c[1] - c[0])) +
+                                                   length(cross(c[2] - c[0], c[3] - c[0])),
+                                               diagonal))) {
+            note(empty, polygon);
+            continue;
+        }
+        const bool flat =
+            !quad || (has_area(area(corners), diagonal) &&
+                      planarity_error(corners) <= planarity_tolerance(diagonal, extent));
+        if (flat && (!quad || is_convex(c, vector_area(corners)))) {
+            mended.push_back(now);
+            continue;
+        }
+        note(flat ? dented : bent, polygon);
+        const std::uint32_t first = split_at_second_corner(c) ? 1 : 0;
+        const auto corner = [&](std::uint32_t i) { return now.corners[(first + i) % 4]; };
+        add_triangle(now, {corner(0), corner(1), corner(2)});
+        add_triangle(now, {corner(0), corner(2), corner(3)});
+    }
+    scene.polygons = std::move(mended);
+    warn(scene, empty, "has no area and is left out", "have no area and are left out");
+    warn(scene, bent, "is not planar and is split into two triangles",
+         "are not planar and are split into two triangles each");
+    warn(scene, dented, "is not convex and is split into two triangles",
+         "are not convex and are split into two triangles each");
+}
+
+}  // namespace
+
+double planarity_tolerance(double polygon_diagonal, double scene_diagonal) {
+    return 1e-6 * polygon_diagonal + 0x1.0p-24 * scene_diagonal;
+}
+
+void mend(Scene& scene) {
+    check_points(scene);
+    for (Material& material : scene.materials) mend_material(material, scene.warnings);
+    mend_polygons(scene);
+}
+
+}  // namespace exitance
