@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes docs/solution-file.md: lay the bytes out, describe them in JSON, stream them.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <ostream>
+
+#include "exitance/math/box.h"
+#include "exitance/run/atomic_file.h"
+#include "exitance/solution/file.h"
+#include "exitance/solution/file_extras.h"
+#include "exitance/solution/file_layout.h"
+#include "exitance/solution/glb.h"
+#include "exitance/solution/preview.h"
+
+namespace exitance {
+
+namespace {
+
+using nlohmann::json;
+using namespace solution_file;
+
+constexpr int float_type = 5126, unsigned_int_type = 5125, unsigned_short_type = 5123;
+constexpr int array_buffer = 34962, element_array_buffer = 34963;
+
+/// Parts of one material and one group of emission: a primitive of the mesh.
+struct Primitive {
+    std::uint32_t material = 0, group = 0;
+    bool irradiance = false;
+    std::vector<std::uint32_t> parts;
+    std::vector<std::uint32_t> vertices;  ///< of the solution, ascending
+    std::size_t triangles = 0;
+};
+
+/// The bytes of one bufferView, and how its accessors describe them.
+struct View {
+    std::string name;
+    std::uint64_t offset = 0, bytes = 0;
+    std::size_t stride = 0;
+    int target = 0;
+};
+
+[[noreturn]] void not_finite(const std::string& what) {
+    throw Error(Fault::could_not_finish, "the solution holds a value that is not finite: " + what);
+}
+
+void demand_finite(const json& value, const std::string& path) {
+    if (value.is_number_float() && !std::isfinite(value.get<double>())) not_finite(path);
+    if (value.is_structured())
+        for (const auto& [key, entry] : value.items()) demand_finite(entry, path + "." + key);
+}
+
+/// Collects small writes; checks that what leaves is finite.
+class Sink {
+  public:
+    explicit Sink(std::ostream& out) : out_(&out) { buffer_.reserve(capacity); }
+    ~Sink() { flush(); }
+    Sink(const Sink&) = delete;
+    Sink& operator=(const Sink&) = delete;
+
+    template <class T>
+    void put(T value) {
+        if constexpr (std::is_floating_point_v<T>)
+            if (!std::isfinite(value)) not_finite("a vertex or an emitter");
+        if (buffer_.size() + sizeof value > capacity) flush();
+        const auto* bytes = reinterpret_cast<const char*>(&value);
+        buffer_.insert(buffer_.end(), bytes, bytes + sizeof value);
+    }
+    template <class T>
+    void put(const Vector3<T>& v) {
+        put(v.x), put(v.y), put(v.z);
+    }
+
+  private:
+    void flush() {
+        out_->write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+        buffer_.clear();
+    }
+    static constexpr std::size_t capacity = 1 << 20;
+    std::ostream* out_;
+    std::vector<char> buffer_;
+};
+
+class Writer {
+  public:
+    explicit Writer(const Solution& solution) : s_(solution) {
+        attributes_ = attributes_per_group(s_.bands.size()) * s_.groups.size();
+        group_parts();
+        lay_out();
+    }
+
+    void write(std::ostream& out) {
+        tone_preview();
+        write_glb(out, description(), size_, [&](std::ostream& binary) { write_binary(binary); });
+    }
+
+  private:
+    const Solution& s_;
+    std::size_t attributes_ = 0;  ///< exitance attributes per vertex
+    std::vector<Primitive> primitives_;
+    std::size_t vertices_ = 0;
+    std::vector<View> views_;
+    std::uint64_t size_ = 0;
+    PreviewTone tone_;
+
+    void group_parts() {
+        std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
+        for (std::uint32_t p = 0; p < s_.parts.size(); ++p) {
+            const SolutionPart& part = s_.parts[p];
+            const auto [entry, is_new] =
+                known.try_emplace({part.material, part.group}, primitives_.size());
+            if (is_new) {
+                const bool irradiance = needs_irradiance(s_.materials[part.material]);
+                primitives_.push_back({part.material, part.group, irradiance, {}, {}, 0});
+            }
+            primitives_[entry->second].parts.push_back(p);
+            primitives_[entry->second].triangles += part.triangles;
+        }
+        std::vector<std::uint32_t> seen(s_.positions.size(), 0);
+        for (std::uint32_t p = 0; p < primitives_.size(); ++p) {
+            Primitive& primitive = primitives_[p];
+            for_each_corner(primitive, [&](std::uint32_t vertex) {
+                if (seen[vertex] == p + 1) return;
+                seen[vertex] = p + 1;
+                primitive.vertices.push_back(vertex);
+            });
+            std::sort(primitive.vertices.begin(), primitive.vertices.end());
+            vertices_ += primitive.vertices.size();
+        }
+        // glTF allows no empty primitive.
+        std::erase_if(primitives_, [](const Primitive& p) { return p.triangles == 0; });
+    }
+
+    template <class Body>
+    void for_each_corner(const Primitive& primitive, const Body& body) const {
+        for (const std::uint32_t p : primitive.parts)
+            for (std::uint32_t t = 0; t < s_.parts[p].triangles; ++t)
+                for (const std::uint32_t vertex : s_.triangles[s_.parts[p].first_triangle + t])
+                    body(vertex);
+    }
+
+    void add_view(const std::string& name, std::uint64_t count, std::size_t stride, int target) {
+        views_.push_back({name, size_, count * stride, stride, target});
+        size_ += count * stride;
+    }
+
+    void lay_out() {
+        std::size_t with_irradiance = 0, triangles = 0;
+        for (const Primitive& p : primitives_) {
+            triangles += p.triangles;
+            if (p.irradiance) with_irradiance += p.vertices.size();
+        }
+        if (!s_.emitters.empty()) add_view("emitters", s_.emitters.size(), emitter_bytes, 0);
+        if (primitives_.empty()) return;
+        add_view("POSITION", vertices_, 12, array_buffer);
+        add_view("NORMAL", vertices_, 12, array_buffer);
+        add_view("COLOR_0", vertices_, 8, array_buffer);
+        for (std::size_t a = 0; a < attributes_; ++a)
+            add_view(exitance_attribute(a), vertices_, 12, array_buffer);
+        if (with_irradiance)
+            for (std::size_t a = 0; a < attributes_; ++a)
+                add_view(irradiance_attribute(a), with_irradiance, 12, array_buffer);
+        add_view("indices", triangles, 12, element_array_buffer);
+    }
+
+    /// The three values of attribute `a` out of all columns, zero beyond the last band.
+    Vec3f three_of(std::span<const float> columns, std::size_t a) const {
+        const std::size_t bands = s_.bands.size(), per_group = attributes_per_group(bands);
+        const std::size_t group = a / per_group, first = a % per_group * 3;
+        Vec3f out;
+        for (std::size_t i = 0; i < 3 && first + i < bands; ++i)
+            out[i] = columns[group * bands + first + i];
+        return out;
+    }
+
+    /// Weighted sum of the groups as linear RGB; grey where bands are not R, G, B.
+    Vec3f total_rgb(std::span<const float> columns) const {
+        const std::size_t bands = s_.bands.size();
+        Spectrum total(bands, 0.0);
+        for (std::size_t g = 0; g < s_.groups.size(); ++g)
+            for (std::size_t b = 0; b < bands; ++b)
+                total[b] += s_.groups[g].weight * double(columns[g * bands + b]);
+        if (bands == 3) return Vec3f(Vec3{total[0], total[1], total[2]});
+        const auto grey = static_cast<float>(luminance(total));
+        return {grey, grey, grey};
+    }
+
+    template <class Body>
+    void for_each_vertex(const Body& body) const {
+        std::vector<float> B(s_.columns());
+        for (const Primitive& primitive : primitives_)
+            for (const std::uint32_t vertex : primitive.vertices) {
+                s_.exitance(vertex, s_.parts[primitive.parts[0]], B);
+                body(vertex, B);
+            }
+    }
+
+    void tone_preview() {
+        std::vector<float> area_of_vertex(s_.positions.size(), 0.0f);
+        for (const auto& t : s_.triangles) {
+            const Vec3f &a = s_.positions[t[0]], &b = s_.positions[t[1]], &c = s_.positions[t[2]];
+            const float area = length(cross(b - a, c - a)) / 6;
+            for (const std::uint32_t vertex : t) area_of_vertex[vertex] += area;
+        }
+        std::vector<Vec3f> colours;
+        std::vector<float> areas;
+        colours.reserve(vertices_), areas.reserve(vertices_);
+        for_each_vertex([&](std::uint32_t vertex, std::span<const float> B) {
+            colours.push_back(total_rgb(B));
+            areas.push_back(area_of_vertex[vertex]);
+        });
+        tone_ = preview_tone(colours, areas);
+    }
+
+    json accessor(const std::string& view, std::uint64_t first, std::uint64_t count, int type,
+                  const char* shape) const {
+        std::size_t index = 0;
+        while (views_[index].name != view) ++index;
+        const std::uint64_t element = type == unsigned_int_type ? 4 : views_[index].stride;
+        json out{{"bufferView", index}, {"count", count}, {"componentType", type}, {"type", shape}};
+        if (first) out["byteOffset"] = first * element;
+        if (type == unsigned_short_type) out["normalized"] = true;
+        return out;
+    }
+
+    void describe_mesh(json& gltf) const {
+        json& accessors = gltf["accessors"] = json::array();
+        json primitives = json::array();
+        const auto add = [&](json entry) {
+            accessors.push_back(std::move(entry));
+            return accessors.size() - 1;
+        };
+        std::uint64_t vertex = 0, irradiance_vertex = 0, triangle = 0;
+        for (const Primitive& p : primitives_) {
+            const std::uint64_t count = p.vertices.size();
+            Vector3<float> low = s_.positions[p.vertices[0]], high = low;
+            for (const std::uint32_t v : p.vertices)
+                low = min(low, s_.positions[v]), high = max(high, s_.positions[v]);
+            json position = accessor("POSITION", vertex, count, float_type, "VEC3");
+            position["min"] = {low.x, low.y, low.z};
+            position["max"] = {high.x, high.y, high.z};
+            json attributes{{"POSITION", add(std::move(position))}};
+            attributes["NORMAL"] = add(accessor("NORMAL", vertex, count, float_type, "VEC3"));
+            attributes["COLOR_0"] =
+                add(accessor("COLOR_0", vertex, count, unsigned_short_type, "VEC4"));
+            for (std::size_t a = 0; a < attributes_; ++a) {
+                const std::string name = exitance_attribute(a);
+                attributes[name] = add(accessor(name, vertex, count, float_type, "VEC3"));
+            }
+            for (std::size_t a = 0; p.irradiance && a < attributes_; ++a) {
+                const std::string name = irradiance_attribute(a);
+                attributes[name] =
+                    add(accessor(name, irradiance_vertex, count, float_type, "VEC3"));
+            }
+            const auto indices = add(
+                accessor("indices", 3 * triangle, 3 * p.triangles, unsigned_int_type, "SCALAR"));
+            json parts = json::array();
+            for (const std::uint32_t i : p.parts)
+                parts.push_back({{"name", s_.parts[i].name},
+                                 {"order", i},
+                                 {"triangles", s_.parts[i].triangles}});
+            primitives.push_back(
+                {{"attributes", attributes},
+                 {"indices", indices},
+                 {"material", p.material},
+                 {"extras", {{"exitance", {{"group", p.group}, {"parts", parts}}}}}});
+            vertex += count, triangle += p.triangles;
+            if (p.irradiance) irradiance_vertex += count;
+        }
+        gltf["meshes"] = {{{"name", "solution"}, {"primitives", primitives}}};
+        gltf["nodes"].push_back({{"name", "solution"}, {"mesh", 0}});
+    }
+
+    void describe_materials(json& gltf) const {
+        for (const Material& material : s_.materials)
+            gltf["materials"].push_back(
+                {{"name", material.name},
+                 {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
+                 {"extensions", {{"KHR_materials_unlit", json::object()}}},
+                 {"extras", {{"exitance", extras_of(material)}}}});
+        if (!s_.materials.empty()) gltf["extensionsUsed"] = {"KHR_materials_unlit"};
+    }
+
+    /// glTF cameras look along −z of their node.
+    void describe_cameras(json& gltf) const {
+        Box box;
+        for (const Vec3f& p : s_.positions) box.add(Vec3(p));
+        for (const Camera& camera : s_.cameras) {
+            const Vec3 back = normalized(camera.eye - camera.look_at);
+            const Vec3 right = normalized(cross(camera.up, back));
+            const Vec3 up = cross(back, right);
+            if (!(length(right) > 0) || !(camera.fov_y > 0 && camera.fov_y < 180)) continue;
+            json perspective{
+                {"yfov", camera.fov_y * std::numbers::pi / 180},
+                {"znear", camera.near.value_or(std::max(1e-3 * box.diagonal(), 1e-6))}};
+            if (camera.aspect) perspective["aspectRatio"] = *camera.aspect;
+            if (camera.far) perspective["zfar"] = *camera.far;
+            gltf["nodes"].push_back(
+                {{"name", camera.name},
+                 {"camera", gltf["cameras"].size()},
+                 {"matrix",
+                  {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0,
+                   camera.eye.x, camera.eye.y, camera.eye.z, 1}}});
+            gltf["cameras"].push_back(
+                {{"name", camera.name}, {"type", "perspective"}, {"perspective", perspective}});
+        }
+    }
+
+    std::string description() const {
+        json extras = extras_of(s_);
+        if (!s_.emitters.empty())
+            extras["emitters"] = {{"bufferView", 0}, {"count", s_.emitters.size()}};
+        json gltf{{"asset",
+                   {{"version", "2.0"},
+                    {"generator", "Exitance"},
+                    {"extras", {{"exitance", std::move(extras)}}}}}};
+        if (!primitives_.empty()) describe_mesh(gltf);
+        describe_materials(gltf);
+        describe_cameras(gltf);
+        if (gltf.contains("nodes")) {
+            json all = json::array();
+            for (std::size_t i = 0; i < gltf["nodes"].size(); ++i) all.push_back(i);
+            gltf["scenes"] = {{{"nodes", all}}};
+            gltf["scene"] = 0;
+        }
+        if (size_) gltf["buffers"] = {{{"byteLength", size_}}};
+        for (const View& view : views_) {
+            json entry{{"name", view.name}, {"buffer", 0}, {"byteLength", view.bytes}};
+            if (view.offset) entry["byteOffset"] = view.offset;
+            if (view.target) entry["target"] = view.target;
+            if (view.target == array_buffer) entry["byteStride"] = view.stride;
+            gltf["bufferViews"].push_back(std::move(entry));
+        }
+        demand_finite(gltf, "glTF");
+        return gltf.dump(-1, ' ', false, json::error_handler_t::replace);
+    }
+
+    /// glTF wants unit normals; a vertex of degenerate triangles alone has none, any will do.
+    static Vec3f unit(const Vec3f& normal) {
+        const float l = length(normal);
+        if (l == 0) return {0, 0, 1};
+        return std::abs(l - 1) < 1e-5f ? normal : normal / l;
+    }
+
+    void write_binary(std::ostream& out) const {
+        Sink sink(out);
+        for (const Emitter& emitter : s_.emitters) {
+            for (std::uint32_t i = 0; i < 4; ++i)
+                sink.put(i < emitter.corner_count ? emitter.corners[i] : Vec3{});
+            sink.put(emitter.corner_count), sink.put(emitter.part);
+        }
+        for (const Primitive& p : primitives_)
+            for (const std::uint32_t v : p.vertices) sink.put(s_.positions[v]);
+        for (const Primitive& p : primitives_)
+            for (const std::uint32_t v : p.vertices) sink.put(unit(s_.normals[v]));
+        for_each_vertex([&](std::uint32_t, std::span<const float> B) {
+            const Vec3f shown = tone_(total_rgb(B));
+            for (std::size_t i = 0; i < 3; ++i)
+                sink.put(static_cast<std::uint16_t>(std::lround(shown[i] * 65535.0f)));
+            sink.put(std::uint16_t{65535});
+        });
+        for (std::size_t a = 0; a < attributes_; ++a)
+            for_each_vertex(
+                [&](std::uint32_t, std::span<const float> B) { sink.put(three_of(B, a)); });
+        for (std::size_t a = 0; a < attributes_; ++a)
+            for (const Primitive& p : primitives_)
+                for (const std::uint32_t v : p.vertices)
+                    if (p.irradiance) sink.put(three_of(s_.irradiance[VertexId(v)], a));
+        write_indices(sink);
+    }
+
+    void write_indices(Sink& sink) const {
+        std::vector<std::uint32_t> local(s_.positions.size(), 0);
+        for (const Primitive& p : primitives_) {
+            for (std::uint32_t i = 0; i < p.vertices.size(); ++i) local[p.vertices[i]] = i;
+            for_each_corner(p, [&](std::uint32_t vertex) { sink.put(local[vertex]); });
+        }
+    }
+};
+
+}  // namespace
+
+void write_solution(const Solution& solution, const std::filesystem::path& path) {
+    Writer writer(solution);
+    write_atomically(path, [&](std::ostream& out) { writer.write(out); });
+}
+
+}  // namespace exitance
