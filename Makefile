@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every target installs what it needs first (scripts/setup) and then works offline.
+.DEFAULT_GOAL := help
+.PHONY: help demo build test tsan bench tidy format clean
+
+# The scene that `make demo` lights: make demo SCENE=scenes/cornell.toml
+SCENE ?= scenes/cornell.toml
+DEMO := out/$(basename $(notdir $(SCENE)))
+
+help: ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
+
+demo: build ## light a room: a solution file and a picture in out/
+	@mkdir -p out
+	build/bin/exitance solve $(SCENE) -o $(DEMO).glb
+	build/bin/exitance render $(DEMO).glb -o $(DEMO).png
+	@scripts/demo-notes $(DEMO)
+
+build: ## the program: build/bin/exitance
+	@scripts/setup build
+	@[ -f build/build.ninja ] || cmake --preset program --log-level=NOTICE
+	@cmake --build build --target exitance_app
+
+test: ## every check, also under the address and undefined behaviour sanitizers
+	@scripts/setup build test
+	@cmake --preset release --log-level=NOTICE
+	@cmake --build --preset release
+	@cmake --preset asan --log-level=NOTICE
+	@cmake --build --preset asan
+	@ctest --test-dir build --output-on-failure --no-label-summary -j $$(nproc)
+
+tsan: ## the parallel parts under the thread sanitizer
+	@scripts/setup build test
+	@cmake --preset tsan --log-level=NOTICE
+	@cmake --build --preset tsan
+	@ctest --test-dir build-tsan --output-on-failure -j $$(nproc)
+
+bench: ## speed and memory against what the machine can do
+	@scripts/setup build bench
+	@cmake --preset bench --log-level=NOTICE
+	@cmake --build --preset bench
+	@benchmarks/run
+
+tidy: ## clang-tidy over the sources
+	@scripts/setup build test
+	@cmake --preset release --log-level=NOTICE
+	@run-clang-tidy -quiet -p build '/(src|apps)/'
+
+format: ## lay out the sources as .clang-format says
+	@scripts/setup test
+	@scripts/format
+
+clean: ## remove everything that was built
+	rm -rf build build-asan build-tsan build-bench out
