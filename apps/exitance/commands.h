@@ -9,6 +9,7 @@ class App;
 namespace exitance::cli {
 
 void add_info(CLI::App& app);
+void add_manual(CLI::App& app);
 void add_prorad(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_render(CLI::App& app);

@@ -1,23 +1,53 @@
 // SPDX-License-Identifier: Apache-2.0
 // The command line. The only place that prints or exits.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "exitance/run/error.h"
+#include "help_text.h"
+
+namespace {
+
+void describe_program(CLI::App& app) {
+    app.name("exitance");
+    app.set_version_flag("--version", "exitance " EXITANCE_VERSION, "print the version");
+    app.set_help_flag("--help,-h", "print this help");
+    app.require_subcommand(1);
+    exitance::cli::use_help_layout(app);
+    app.footer(
+        "exitance COMMAND --help says more. Exit codes: 0 done, 2 wrong use, 3 bad input,\n"
+        "4 could not finish (disk full, out of memory).");
+}
+
+void add_commands(CLI::App& app) {
+    exitance::cli::add_manual(app);
+}
+
+/// CLI11 only says that a command is missing where the one that was typed does not exist.
+void require_known_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    const std::string typed = argv[1];
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), typed) == names.end())
+        throw exitance::Error(exitance::Fault::wrong_use, "unknown command '" + typed + "'" +
+                                                              exitance::suggestion(typed, names));
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"Exitance computes how light fills a space, once, for every point of view."};
-    app.name("exitance");
-    app.require_subcommand(1);
-    exitance::cli::add_solve(app);
-    exitance::cli::add_render(app);
-    exitance::cli::add_probe(app);
-    exitance::cli::add_info(app);
-    exitance::cli::add_prorad(app);
+    describe_program(app);
+    add_commands(app);
     try {
+        require_known_command(app, argc, argv);
         app.parse(argc, argv);
         return 0;
     } catch (const CLI::ParseError& error) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers as they are read aloud.
+#pragma once
+
+#include <string>
+
+namespace exitance::cli {
+
+/// Three digits and a prefix: "3.4 M", "57 k", "12".
+std::string human_count(double value);
+
+/// Four significant digits and the unit, if there is one: "12.31 lm".
+std::string human_quantity(double value, const std::string& unit);
+
+}  // namespace exitance::cli

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// exitance manual: the commands and options as Markdown, from their declarations.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "commands.h"
+#include "help_text.h"
+
+namespace exitance::cli {
+
+void add_manual(CLI::App& app) {
+    app.add_subcommand("manual", "print every command and option as a Markdown page")
+        ->callback([&app] { std::fputs(manual(app).c_str(), stdout); });
+}
+
+}  // namespace exitance::cli

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "output_path.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "exitance/run/atomic_file.h"
+#include "exitance/run/error.h"
+
+namespace exitance::cli {
+
+void require_output(const std::filesystem::path& output, const std::filesystem::path& input,
+                    const std::vector<std::string>& endings) {
+    std::error_code absent;
+    const bool device = std::filesystem::is_other(output, absent);
+    const std::string ending = output.extension().string();
+    if (!device && std::find(endings.begin(), endings.end(), ending) == endings.end())
+        throw Error(Fault::wrong_use, fmt::format("--output: '{}' is not allowed, expected a name "
+                                                  "that ends in {}",
+                                                  output.string(), fmt::join(endings, " or ")));
+    if (std::filesystem::equivalent(output, input, absent))
+        throw Error(Fault::wrong_use,
+                    fmt::format("--output: '{}' would replace the input", output.string()));
+    check_writable(output);
+}
+
+}  // namespace exitance::cli

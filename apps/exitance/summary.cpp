@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "summary.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "human_number.h"
+
+namespace exitance::cli {
+
+namespace {
+
+std::string group_names(const Solution& solution) {
+    std::string out;
+    for (const LightGroup& group : solution.groups) out += ", " + group.name;
+    return out.substr(2);
+}
+
+std::string percent(double fraction) {
+    return fmt::format("{:.2g} %", 100 * fraction);
+}
+
+std::string energy_line(const Solution& solution) {
+    const EnergyBalance& energy = solution.energy;
+    const std::string unit = flux_unit(solution.quantity);
+    if (energy.emitted <= 0) return "nothing is emitted";
+    const auto share = [&](double part) { return percent(part / energy.emitted); };
+    return fmt::format(
+        "{} emitted = {} absorbed + {} absorbed by backs + {} escaped + {} unshot; balance off by "
+        "{}",
+        human_quantity(energy.emitted, unit), share(energy.absorbed), share(energy.absorbed_behind),
+        share(energy.escaped), share(energy.unshot), percent(std::abs(energy.imbalance())));
+}
+
+}  // namespace
+
+void print_warnings(const std::vector<Problem>& warnings) {
+    for (const Problem& warning : warnings) {
+        const std::string place = warning.place.text();
+        std::fprintf(stderr, "warning: %s%s%s\n", place.c_str(), place.empty() ? "" : ": ",
+                     warning.what.c_str());
+    }
+}
+
+std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds) {
+    std::string out =
+        fmt::format("{}: {} vertices, {} triangles, light groups: {}\n", file.string(),
+                    solution.positions.size(), solution.triangles.size(), group_names(solution));
+    out += fmt::format("  energy  {}\n", energy_line(solution));
+    if (solution.error)
+        out +=
+            fmt::format("  error   {} ± {} (RMS of irradiance over its mean, {} held-out points)\n",
+                        percent(solution.error->rms), percent(solution.error->confidence),
+                        solution.error->points);
+    const auto count = [&](const char* name) {
+        const auto found = solution.counters.find(name);
+        return human_count(found == solution.counters.end() ? 0 : found->second);
+    };
+    out += fmt::format("  work    {} shots, {} rays, {:.3g} s\n", count("shots"), count("rays"),
+                       seconds);
+    return out;
+}
+
+}  // namespace exitance::cli
