@@ -15,6 +15,7 @@ if(EXITANCE_NATIVE)
 endif()
 if(EXITANCE_SANITIZE)
   target_compile_options(exitance_flags INTERFACE -fsanitize=${EXITANCE_SANITIZE}
-    -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    -fno-omit-frame-pointer -fno-sanitize-recover=all
+    -Wno-maybe-uninitialized)  # false positives in GCC's own headers when instrumented
   target_link_options(exitance_flags INTERFACE -fsanitize=${EXITANCE_SANITIZE})
 endif()

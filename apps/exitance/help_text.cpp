@@ -123,12 +123,15 @@ std::string manual(const CLI::App& app) {
                                   "Written by `exitance manual` from the declarations of the "
                                   "options; do not edit by hand.");
     for (const CLI::App* command : app.get_subcommands({})) {
-        out += fmt::format(
-            "\n## exitance {}\n\n{}\n\n    {}\n\n| Option | What it does |\n|---|---|\n",
-            command->get_name(), command->get_description(), usage(*command));
-        for (const CLI::Option* option : command->get_options())
-            out += fmt::format("| `{}` | {} |\n", table_cell(option_name(*option)),
-                               table_cell(option_text(*option)));
+        out += fmt::format("\n## exitance {}\n\n{}\n\n    {}\n", command->get_name(),
+                           command->get_description(), usage(*command));
+        std::string rows;
+        for (const CLI::Option* option : command->get_options()) {
+            if (option == command->get_help_ptr()) continue;
+            rows += fmt::format("| `{}` | {} |\n", table_cell(option_name(*option)),
+                                table_cell(option_text(*option)));
+        }
+        if (!rows.empty()) out += "\n| Option | What it does |\n|---|---|\n" + rows;
         if (!command->get_footer().empty())
             out += fmt::format("\n```\n{}\n```\n", command->get_footer());
     }

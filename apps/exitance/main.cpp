@@ -20,12 +20,17 @@ void describe_program(CLI::App& app) {
     app.set_help_flag("--help,-h", "print this help");
     app.require_subcommand(1);
     exitance::cli::use_help_layout(app);
+    app.failure_message([](const CLI::App* asked, const CLI::Error& error) {
+        return std::string("exitance: ") + error.what() + " (" + asked->get_name() +
+               " --help says more)\n";
+    });
     app.footer(
         "exitance COMMAND --help says more. Exit codes: 0 done, 2 wrong use, 3 bad input,\n"
         "4 could not finish (disk full, out of memory).");
 }
 
 void add_commands(CLI::App& app) {
+    exitance::cli::add_solve(app);
     exitance::cli::add_manual(app);
 }
 
@@ -40,6 +45,25 @@ void require_known_command(const CLI::App& app, int argc, char** argv) {
                                                               exitance::suggestion(typed, names));
 }
 
+/// The first word that no command took, and the option it may have been meant to be.
+exitance::Error unknown_option(const CLI::App& app, const CLI::Error& error) {
+    for (const CLI::App* command : app.get_subcommands()) {
+        std::vector<std::string> names;
+        for (const CLI::Option* option : command->get_options())
+            for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+        for (const std::string& word : command->remaining())
+            if (word.starts_with('-'))
+                return {exitance::Fault::wrong_use,
+                        "unknown option '" + word + "'" + exitance::suggestion(word, names)};
+    }
+    return {exitance::Fault::wrong_use, error.what()};
+}
+
+int report(const exitance::Error& error) {
+    std::fprintf(stderr, "exitance: %s\n", error.what());
+    return error.exit_code();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -50,11 +74,12 @@ int main(int argc, char** argv) {
         require_known_command(app, argc, argv);
         app.parse(argc, argv);
         return 0;
+    } catch (const CLI::ExtrasError& error) {
+        return report(unknown_option(app, error));
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? 0 : 2;
     } catch (const exitance::Error& error) {
-        std::fprintf(stderr, "exitance: %s\n", error.what());
-        return error.exit_code();
+        return report(error);
     } catch (const std::bad_alloc&) {
         std::fprintf(stderr, "exitance: out of memory\n");
         return 4;

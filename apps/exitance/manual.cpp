@@ -9,8 +9,10 @@
 namespace exitance::cli {
 
 void add_manual(CLI::App& app) {
-    app.add_subcommand("manual", "print every command and option as a Markdown page")
-        ->callback([&app] { std::fputs(manual(app).c_str(), stdout); });
+    CLI::App& command =
+        *app.add_subcommand("manual", "print every command and option as a Markdown page");
+    command.footer("Example:\n  exitance manual > manual.md");
+    command.callback([&app] { std::fputs(manual(app).c_str(), stdout); });
 }
 
 }  // namespace exitance::cli

@@ -30,7 +30,8 @@ std::string description(const Option& option) {
 
 }  // namespace
 
-GivenOptions::GivenOptions(CLI::App& command, Options options) : options_(std::move(options)) {
+GivenOptions::GivenOptions(CLI::App& command, const std::string& group, Options options)
+    : options_(std::move(options)) {
     for (const Option& option : options_) {
         if (option.is_flag()) {
             const auto store = [this, name = option.name](std::int64_t count) {
@@ -38,7 +39,8 @@ GivenOptions::GivenOptions(CLI::App& command, Options options) : options_(std::m
             };
             command
                 .add_flag_function(fmt::format("--{0},!--no-{0}", option.name), store, option.what)
-                ->default_str(option.value_text() == "true" ? "on" : "off");
+                ->default_str(option.value_text() == "true" ? "on" : "off")
+                ->group(group);
         } else {
             const auto store = [this, &option](const std::string& text) {
                 option.set(text);  // refused before any work begins
@@ -47,7 +49,8 @@ GivenOptions::GivenOptions(CLI::App& command, Options options) : options_(std::m
             command
                 .add_option_function<std::string>("--" + option.name, store, description(option))
                 ->type_name(value_name(option))
-                ->default_str(option.value_text());
+                ->default_str(option.value_text())
+                ->group(group);
         }
     }
 }

@@ -18,9 +18,9 @@ namespace exitance::cli {
 /// What the command line said for declared options; the values are stored by `apply`.
 class GivenOptions {
   public:
-    /// Adds a flag to `command` for each of `options`, whose targets must outlive it. A switch
-    /// `x` becomes --x and --no-x.
-    GivenOptions(CLI::App& command, Options options);
+    /// Adds a flag to `command` for each of `options`, whose targets must outlive it, under the
+    /// heading `group`. A switch `x` becomes --x and --no-x.
+    GivenOptions(CLI::App& command, const std::string& group, Options options);
     GivenOptions(const GivenOptions&) = delete;  // the flags refer to it
     GivenOptions& operator=(const GivenOptions&) = delete;
 

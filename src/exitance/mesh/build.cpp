@@ -161,7 +161,8 @@ void Mesh::make_faces(const Scene& scene, const MeshOptions& options) {
         for (const bool back : {false, true}) {
             if (back && !scene.material(polygon).two_sided) break;
             if (back) {
-                // Seen from behind: corners in reverse, starting so that sides keep their direction.
+                // Seen from behind: corners in reverse, starting so that sides keep their
+                // direction.
                 std::reverse(face.corners.begin(), face.corners.begin() + n);
                 std::reverse(face.normals.begin(), face.normals.begin() + n);
                 for (Vec3& m : face.normals) m = -m;
@@ -173,9 +174,9 @@ void Mesh::make_faces(const Scene& scene, const MeshOptions& options) {
                 if (dot(face.normals[i], face.normal) < 0.2) face.normals[i] = {};
             for (std::uint32_t i = 0; i < n; ++i) {
                 const PositionId a = face.corners[i], b = face.corners[(i + 1) % n];
-                const auto [slot, fresh] = edge_of.insert(
-                    {Key{bits_of(std::min(a, b).value, std::max(a, b).value), 0},
-                     static_cast<std::uint32_t>(edges_.size())});
+                const auto [slot, fresh] =
+                    edge_of.insert({Key{bits_of(std::min(a, b).value, std::max(a, b).value), 0},
+                                    static_cast<std::uint32_t>(edges_.size())});
                 if (fresh) edges_.push_back({std::min(a, b), std::max(a, b)});
                 face.edges[i] = slot->second;
             }

@@ -132,11 +132,7 @@ Vec3 Mesh::normal(const Face& face, std::int32_t u, std::int32_t v) const {
 Mesh::Midpoints Mesh::midpoints(const Element& element) {
     const std::int32_t h = element.size / 2, u = element.u, v = element.v;
     if (element.count == 4)
-        return {{{{u + h, v},
-                  {u + 2 * h, v + h},
-                  {u + h, v + 2 * h},
-                  {u, v + h},
-                  {u + h, v + h}}},
+        return {{{{u + h, v}, {u + 2 * h, v + h}, {u + h, v + 2 * h}, {u, v + h}, {u + h, v + h}}},
                 5};
     return {{{{u + h, v}, {u + h, v + h}, {u, v + h}, {}, {}}}, 3};
 }
@@ -192,8 +188,8 @@ VertexId Mesh::make_vertex(const Element& element, const Face& face, std::int32_
         vertex_at_.insert({{position.value, face.smooth}, VertexId(vertices_.size())});
     const VertexId id = slot->second;
     if (fresh)
-        vertices_.push_back({position, face.smooth, Vec3f(normal(face, u, v)),
-                             sample_point(element, u, v)});
+        vertices_.push_back(
+            {position, face.smooth, Vec3f(normal(face, u, v)), sample_point(element, u, v)});
     return id;
 }
 
@@ -242,8 +238,8 @@ void Mesh::split_into(ElementId id, std::vector<ElementId>& done) {
     if (const ElementId parent = (*this)[id].parent; parent.valid()) {
         const Element above = (*this)[parent];
         for (std::uint32_t i = 0; i < above.count; ++i)
-            if (const auto coarse = other_leaf(above.vertices[i],
-                                               above.vertices[(i + 1) % above.count], parent))
+            if (const auto coarse =
+                    other_leaf(above.vertices[i], above.vertices[(i + 1) % above.count], parent))
                 split_into(*coarse, done);
     }
     if (!(*this)[id].leaf()) return;

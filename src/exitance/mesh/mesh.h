@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is solved for: polygon sides are faces, faces are divided into patches (what shoots), patches
-// are the roots of restricted quadtrees of elements, and the elements' corners are the vertices
-// (where light is received).
+// What is solved for: polygon sides are faces, faces are divided into patches (what shoots),
+// patches are the roots of restricted quadtrees of elements, and the elements' corners are the
+// vertices (where light is received).
 //
 // Places and vertices are apart: a `PositionId` is a place in space, made once in double from the
 // original corners, so that all faces around it agree bit for bit; a `VertexId` is a place as part
@@ -46,8 +46,8 @@ struct Patch {
 };
 
 /// A node of a quadtree. Its corners in the integer coordinates of its face are (u, v) and steps of
-/// `size` from there: quads (u,v) (u+s,v) (u+s,v+s) (u,v+s); triangles (u,v) (u+s,v) (u,v+s), with s
-/// negative for the ones that point the other way.
+/// `size` from there: quads (u,v) (u+s,v) (u+s,v+s) (u,v+s); triangles (u,v) (u+s,v) (u,v+s), with
+/// s negative for the ones that point the other way.
 struct Element {
     std::array<VertexId, 4> vertices;
     ElementId parent, first_child;  ///< four children in a row
@@ -64,7 +64,8 @@ struct Vertex {
     PositionId position;
     std::uint32_t smooth = 0;
     Vec3f normal;  ///< unit
-    Vec3 sample;   ///< where irradiance is evaluated: `position`, or a hair inside at a face's border
+    Vec3
+        sample;  ///< where irradiance is evaluated: `position`, or a hair inside at a face's border
 };
 
 /// How finely the scene is divided before any light is known.
@@ -75,7 +76,8 @@ struct MeshOptions {
 
 class Mesh {
   public:
-    /// Subdivision steps a patch can take: element coordinates are multiples of 2^-max_level patches.
+    /// Subdivision steps a patch can take: element coordinates are multiples of 2^-max_level
+    /// patches.
     static constexpr int max_level = 12;
 
     Mesh(const Scene& scene, const MeshOptions& options);
@@ -94,13 +96,16 @@ class Mesh {
 
     std::array<Vec3, 4> corners(const Face& face) const;
     std::array<Vec3, 4> corners(const Element& element) const;
-    const Face& face_of(const Element& element) const { return (*this)[(*this)[element.patch].face]; }
+    const Face& face_of(const Element& element) const {
+        return (*this)[(*this)[element.patch].face];
+    }
 
     /// Point of a face at integer coordinates, shading normal there.
     Vec3 point(const Face& face, std::int32_t u, std::int32_t v) const;
     Vec3 normal(const Face& face, std::int32_t u, std::int32_t v) const;
 
-    /// Places inside `element` between its corners: edge midpoints in order, then the centre of a quad.
+    /// Places inside `element` between its corners: edge midpoints in order, then the centre of a
+    /// quad.
     struct Midpoints {
         std::array<std::array<std::int32_t, 2>, 5> at;
         std::uint32_t count;
@@ -189,8 +194,8 @@ class Mesh {
     std::vector<std::map<Fraction, PositionId>> on_edge_;  ///< places on each input edge
     Table<PositionId> inside_;                             ///< (polygon, u, v) → place
     Table<VertexId> vertex_at_;                            ///< (position, smooth) → vertex
-    Table<std::array<ElementId, 2>> leaves_at_;            ///< (vertex, vertex) → leaves on that edge
-    std::vector<ElementId> free_children_;                 ///< slots of merged children
+    Table<std::array<ElementId, 2>> leaves_at_;  ///< (vertex, vertex) → leaves on that edge
+    std::vector<ElementId> free_children_;       ///< slots of merged children
 };
 
 }  // namespace exitance

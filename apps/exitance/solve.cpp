@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// exitance solve: a scene file goes in, a solution file comes out.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "commands.h"
+#include "exitance/pipeline.h"
+#include "exitance/run/atomic_file.h"
+#include "exitance/scene/read.h"
+#include "exitance/solution/file.h"
+#include "interrupt.h"
+#include "options_cli.h"
+#include "output_path.h"
+#include "progress_bar.h"
+#include "summary.h"
+
+namespace exitance::cli {
+
+namespace {
+
+class SolveCommand {
+  public:
+    explicit SolveCommand(CLI::App& command) : given_(command, "Solving", describe(options_)) {
+        command.add_option("scene", scene_, "what to light: .toml, .glb, .gltf or .geom")
+            ->required();
+        command.add_option("--output,-o", output_, "the solution: a glTF file")
+            ->type_name("file.glb")
+            ->required();
+        reporting_.add_to(command);
+        command.footer(
+            "Examples:\n"
+            "  exitance solve scenes/cornell.toml -o cornell.glb\n"
+            "  exitance solve scenes/cornell.toml -o draft.glb --error 0.1 --time 10\n"
+            "\n"
+            "Ctrl-C stops cleanly and writes what is solved. A project's [solve] table sets the\n"
+            "same options by the same names; the command line wins.");
+    }
+
+    void run() {
+        require_output(output_, scene_, {".glb"});
+        const Scene scene = read_scene(scene_);
+        if (!reporting_.quiet) print_warnings(scene.warnings);
+        given_.apply(scene.settings);
+
+        const Interrupt interrupt;
+        const Stopwatch watch;
+        const Solution solution =
+            light(scene, options_, make_observer(reporting_), &interrupt.cancel());
+        clear_bar(reporting_);
+        write_solution(solution, output_);
+        if (reporting_.quiet) return;
+        if (interrupt.cancel().requested())
+            std::puts("stopped early; what is solved so far is kept");
+        std::fputs(summary(solution, output_, watch.seconds()).c_str(), stdout);
+    }
+
+  private:
+    SolveOptions options_;
+    GivenOptions given_;
+    std::filesystem::path scene_, output_;
+    Reporting reporting_;
+};
+
+}  // namespace
+
+void add_solve(CLI::App& app) {
+    CLI::App& command =
+        *app.add_subcommand("solve", "light a scene: a scene file goes in, a solution comes out");
+    const auto solve = std::make_shared<SolveCommand>(command);
+    command.callback([solve] { solve->run(); });
+}
+
+}  // namespace exitance::cli
