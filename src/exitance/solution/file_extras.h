@@ -2,7 +2,7 @@
 // The parts of a solution that live in the JSON of its file, in both directions.
 #pragma once
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 

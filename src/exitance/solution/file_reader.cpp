@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "exitance/solution/file.h"
 #include "exitance/solution/file_extras.h"
