@@ -48,9 +48,23 @@ struct alignas(64) LaneMask {
     }
 };
 
+// Hits on the back of a face that is open there do not count.
+void reject_open_backs(const RTCFilterFunctionNArguments* query) {
+    const auto& open_backs = *static_cast<const std::vector<char>*>(query->geometryUserPtr);
+    const unsigned n = query->N;
+    for (unsigned i = 0; i < n; ++i) {
+        if (query->valid[i] != -1) continue;
+        const float facing = RTCHitN_Ng_x(query->hit, n, i) * RTCRayN_dir_x(query->ray, n, i) +
+                             RTCHitN_Ng_y(query->hit, n, i) * RTCRayN_dir_y(query->ray, n, i) +
+                             RTCHitN_Ng_z(query->hit, n, i) * RTCRayN_dir_z(query->ray, n, i);
+        if (facing >= 0 && open_backs[RTCHitN_primID(query->hit, n, i)]) query->valid[i] = 0;
+    }
+}
+
 }  // namespace
 
 struct RayCaster::Embree {
+    std::vector<char> open_backs;
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene = nullptr;
 
@@ -66,7 +80,8 @@ struct RayCaster::Embree {
     Embree& operator=(const Embree&) = delete;
 };
 
-RayCaster::RayCaster(std::span<const Vec3> points, std::span<const Face> faces)
+RayCaster::RayCaster(std::span<const Vec3> points, std::span<const Face> faces,
+                     std::vector<char> open_backs)
     : embree_(std::make_unique<Embree>()) {
     Box box;
     for (const Face& face : faces)
@@ -91,6 +106,11 @@ RayCaster::RayCaster(std::span<const Vec3> points, std::span<const Face> faces)
     std::fill_n(indices, 4, 0u);
     for (std::size_t i = 0; i < faces.size(); ++i)
         std::copy(faces[i].begin(), faces[i].end(), indices + 4 * i);
+    embree_->open_backs = std::move(open_backs);
+    if (!embree_->open_backs.empty()) {
+        rtcSetGeometryUserData(geometry, &embree_->open_backs);
+        rtcSetGeometryIntersectFilterFunction(geometry, reject_open_backs);
+    }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(embree_->scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -178,6 +198,25 @@ void RayCaster::closest(const RayPacket& rays, PacketHits& hits) const {
                              query.hit.Ng_z[i] * rays.direction_z[i];
         hits.front |= (hit && facing < 0 ? 1u : 0u) << i;
     }
+}
+
+void RayCaster::visit_near(const Vec3& point, double radius,
+                           const std::function<double(std::uint32_t, double)>& visit) const {
+    const Vec3f p(point - middle_);
+    RTCPointQuery query{p.x, p.y, p.z, 0.0f, static_cast<float>(radius)};
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    using Visit = const std::function<double(std::uint32_t, double)>*;
+    const auto shrink = [](RTCPointQueryFunctionArguments* found) {
+        const Visit visitor = *static_cast<Visit*>(found->userPtr);
+        const double now = double(found->query->radius);
+        const auto next = static_cast<float>((*visitor)(found->primID, now));
+        if (!(next < found->query->radius)) return false;
+        found->query->radius = next;
+        return true;
+    };
+    Visit visitor = &visit;
+    rtcPointQuery(embree_->scene, &query, &context, shrink, &visitor);
 }
 
 }  // namespace exitance

@@ -4,9 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "exitance/math/vector.h"
 
@@ -33,8 +35,10 @@ class RayCaster {
     using Face = std::array<std::uint32_t, 4>;  ///< corners; the last two equal for a triangle
 
     /// `faces` index `points`; positions are stored in float relative to the middle of the scene.
+    /// closest() goes through the back of face i where `open_backs[i]`; none by default.
     /// Throws Error(could_not_finish) when Embree runs out of memory.
-    RayCaster(std::span<const Vec3> points, std::span<const Face> faces);
+    RayCaster(std::span<const Vec3> points, std::span<const Face> faces,
+              std::vector<char> open_backs = {});
     ~RayCaster();
     RayCaster(RayCaster&&) noexcept;
     RayCaster& operator=(RayCaster&&) noexcept;
@@ -59,6 +63,11 @@ class RayCaster {
         std::uint32_t front = 0;  ///< bit mask
     };
     void closest(const RayPacket& rays, PacketHits& hits) const;
+
+    /// Calls `visit(primitive, radius)` for every primitive whose bounds come within `radius` of
+    /// `point`; it returns the radius to go on with, no larger.
+    void visit_near(const Vec3& point, double radius,
+                    const std::function<double(std::uint32_t, double)>& visit) const;
 
   private:
     struct Embree;

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// E(x) = Σ_emitters E_j F_xj V_xj + ∫ (B − E) cosθ/π dω.
+#include "exitance/solution/gather.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "exitance/formfactor/point_polygon.h"
+#include "exitance/math/frame.h"
+#include "exitance/math/warp.h"
+#include "exitance/run/parallel.h"
+#include "exitance/run/random.h"
+#include "exitance/visibility/visible_fraction.h"
+
+namespace exitance {
+
+namespace {
+
+/// Points of one parallel task; their visible fractions are found together.
+constexpr std::size_t block_size = 64;
+static_assert(block_size <= ReceiverBlock::capacity);
+
+/// `p` moved off the surfaces it touches, to the side that they face: where a grid reaches into
+/// the edge between floor and wall, the wall is in front of the point, not around it.
+Vec3 clear_of_surfaces(const Surfaces& surfaces, const GatherPoint& p) {
+    const double clearance = surfaces.caster().clearance();
+    Vec3 offset = p.normal * clearance;
+    surfaces.caster().visit_near(p.position, clearance, [&](std::uint32_t triangle, double radius) {
+        const auto [a, b, c] = surfaces.corners(triangle);
+        const Vec3 n = normalized(cross(b - a, c - a));
+        // What faces against the point covers it rather than bounding it.
+        if (dot(n, p.normal) < -0.5 || std::abs(dot(n, p.position - a)) > clearance) return radius;
+        const double lacking = clearance - dot(n, offset);
+        if (lacking > 0) offset += n * lacking;
+        return radius;
+    });
+    return p.position + offset;
+}
+
+class Gatherer {
+  public:
+    Gatherer(const Surfaces& surfaces, std::span<const GatherPoint> points,
+             std::span<double> columns, const GatherOptions& options)
+        : surfaces_(surfaces),
+          s_(surfaces.solution()),
+          points_(points),
+          out_(columns),
+          options_(options) {}
+
+    void block(std::size_t begin, std::size_t end) const {
+        std::fill(out_.begin() + std::ptrdiff_t(begin * s_.columns()),
+                  out_.begin() + std::ptrdiff_t(end * s_.columns()), 0.0);
+        add_emission(begin, end);
+        for (std::size_t i = begin; i < end; ++i) add_reflection(i);
+    }
+
+  private:
+    const Surfaces& surfaces_;
+    const Solution& s_;
+    std::span<const GatherPoint> points_;
+    std::span<double> out_;
+    const GatherOptions& options_;
+
+    std::span<double> row(std::size_t point) const {
+        return out_.subspan(point * s_.columns(), s_.columns());
+    }
+
+    void add_emission(std::size_t begin, std::size_t end) const {
+        const std::size_t n = end - begin;
+        const Vec3 middle = surfaces_.caster().middle();
+        Receivers receivers;
+        const double clearance = surfaces_.caster().clearance();  // is added again along normals
+        for (std::size_t i = begin; i < end; ++i)
+            receivers.add(
+                clear_of_surfaces(surfaces_, points_[i]) - points_[i].normal * clearance - middle,
+                points_[i].normal, static_cast<std::uint32_t>(hash_bits(options_.seed, i)));
+        std::vector<std::uint32_t> order(n);
+        std::iota(order.begin(), order.end(), 0u);
+        ReceiverBlock block;
+        block.load(receivers, order.data(), n);
+
+        std::vector<double> factor(n);
+        for (std::uint32_t e = 0; e < s_.emitters.size(); ++e) {
+            const Emitter& emitter = s_.emitters[e];
+            const std::span<const Vec3> corners(emitter.corners.data(), emitter.corner_count);
+            bool reached = false;
+            for (std::size_t i = 0; i < n; ++i) {
+                const GatherPoint& p = points_[begin + i];
+                factor[i] = point_polygon_factor(p.position, p.normal, corners);
+                reached = reached || factor[i] > 0;
+            }
+            if (!reached) continue;
+            const std::vector<double> visible = visible_shares(block, factor, e);
+            const SolutionPart& part = s_.parts[emitter.part];
+            const Spectrum& E = s_.materials[part.material].exitance;
+            for (std::size_t i = 0; i < n; ++i) {
+                const std::span<double> columns = row(begin + i);
+                for (std::size_t b = 0; b < E.size(); ++b)
+                    columns[part.group * E.size() + b] += E[b] * factor[i] * visible[i];
+            }
+        }
+    }
+
+    /// Visible share of the factor to emitter `e`: a probe of each point that it reaches, then
+    /// rounds of 256 rays with fresh patterns for those that see it partly.
+    std::vector<double> visible_shares(const ReceiverBlock& block,
+                                       const std::vector<double>& factor, std::uint32_t e) const {
+        constexpr std::uint16_t rays_of_round = 256;
+        constexpr std::uint8_t probe_rays = 64;
+        const Emitter& emitter = s_.emitters[e];
+        const Source source(emitter.corners, emitter.corner_count, surfaces_.caster().middle());
+        RayBudget budget{};
+        for (std::size_t i = 0; i < block.size; ++i) {
+            budget.probe[i] = factor[i] > 0 ? probe_rays : std::uint8_t{0};
+            budget.most[i] = static_cast<std::uint16_t>(
+                std::clamp<std::uint32_t>(options_.emitter_rays, probe_rays, rays_of_round));
+        }
+        std::vector<double> sum(block.size, 0.0), rounds(block.size, 0.0);
+        VisibleFractions found;
+        const std::uint32_t most_rounds =
+            std::max(1u, (options_.emitter_rays + rays_of_round - 1) / rays_of_round);
+        for (std::uint32_t round = 0; round < most_rounds; ++round) {
+            const auto seed = static_cast<std::uint32_t>(hash_bits(options_.seed, e, round));
+            find_visible_fractions(surfaces_.caster(), source, block, budget, seed, found);
+            bool partly = false;
+            for (std::size_t i = 0; i < block.size; ++i) {
+                if (budget.probe[i] == 0) continue;
+                const double fraction = double(found.fraction[i]);
+                sum[i] += fraction;
+                rounds[i] += 1;
+                const bool whole = round == 0 && (fraction == 0 || fraction == 1);
+                if (whole) budget.probe[i] = 0;
+                partly = partly || !whole;
+            }
+            if (!partly) break;
+        }
+        for (std::size_t i = 0; i < block.size; ++i)
+            if (rounds[i] > 0) sum[i] /= rounds[i];
+        return sum;
+    }
+
+    void add_reflection(std::size_t point) const {
+        const GatherPoint& p = points_[point];
+        const Frame frame(p.normal);
+        const Vec3f origin(clear_of_surfaces(surfaces_, p) - surfaces_.caster().middle());
+        const std::uint64_t key = hash_bits(options_.seed, point, 1);
+        const std::uint32_t packets =
+            (options_.hemisphere_rays + RayPacket::width - 1) / RayPacket::width;
+        if (packets == 0) return;
+
+        RayPacket rays;
+        rays.origin_x.fill(origin.x), rays.origin_y.fill(origin.y), rays.origin_z.fill(origin.z);
+        rays.near.fill(0.0f), rays.far.fill(std::numeric_limits<float>::infinity());
+        rays.active = 0xffffu;
+        RayCaster::PacketHits hits;
+        std::vector<double> sum(s_.columns(), 0.0), H(s_.columns());
+        for (std::uint32_t packet = 0; packet < packets; ++packet) {
+            for (std::uint32_t i = 0; i < RayPacket::width; ++i) {
+                const auto u = low_discrepancy(key, packet * std::uint32_t{RayPacket::width} + i);
+                const Vec3 direction = frame.to_world(cosine_hemisphere(u));
+                rays.direction_x[i] = static_cast<float>(direction.x);
+                rays.direction_y[i] = static_cast<float>(direction.y);
+                rays.direction_z[i] = static_cast<float>(direction.z);
+            }
+            surfaces_.caster().closest(rays, hits);
+            for (std::size_t i = 0; i < RayPacket::width; ++i) {
+                if (!(hits.front >> i & 1u)) continue;
+                const auto place = Surfaces::place(hits.primitive[i], hits.u[i], hits.v[i]);
+                surfaces_.irradiance(place, H);
+                const Material& material = s_.materials[surfaces_.part(place.triangle).material];
+                const std::size_t bands = s_.bands.size();
+                for (std::size_t c = 0; c < sum.size(); ++c)
+                    sum[c] += material.reflectance[c % bands] * H[c];
+            }
+        }
+        const std::span<double> columns = row(point);
+        for (std::size_t c = 0; c < sum.size(); ++c)
+            columns[c] += sum[c] / double(packets * RayPacket::width);
+    }
+};
+
+}  // namespace
+
+void gather(const Surfaces& surfaces, std::span<const GatherPoint> points,
+            std::span<double> columns, const GatherOptions& options) {
+    const Gatherer gatherer(surfaces, points, columns, options);
+    parallel_blocks(points.size(), block_size,
+                    [&](std::size_t begin, std::size_t end) { gatherer.block(begin, end); });
+}
+
+}  // namespace exitance
