@@ -1,12 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/pipeline.h"
 
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <cmath>
+
 #include "exitance/run/error.h"
+#include "exitance/solution/balance.h"
+#include "exitance/solution/extract.h"
+#include "exitance/solve/merge.h"
+#include "exitance/solve/shooting.h"
 
 namespace exitance {
 
-Solution light(const Scene&, const SolveOptions&, const Observer&, const Cancel*) {
-    throw Error(Fault::could_not_finish, "the solver is being built");
+namespace {
+
+Grouping grouping_of(const std::string& name) {
+    if (name == "none") return Grouping::none;
+    if (name == "luminaire") return Grouping::luminaire;
+    if (name == "material") return Grouping::material;
+    return Grouping::file;
+}
+
+// Length of the scene's surface, as it were: the side of a square of its area.
+double extent(const Scene& scene) {
+    double area = 0;
+    for (const Polygon& polygon : scene.polygons) area += scene.area(polygon);
+    return std::sqrt(area);
+}
+
+// The error asked for is spent on interpolation, whose part falls with the square of an element's
+// size: patches shrink with its root. At 2 % a patch is a twentieth of the extent.
+MeshOptions mesh_options(const SolveOptions& options, double extent) {
+    return {options.patch_size.value_or(
+                std::max(1e-9, 0.05 * extent * std::sqrt(options.error / 0.02))),
+            true};
+}
+
+ShootingOptions shooting_options(const SolveOptions& options, double extent) {
+    ShootingOptions out;
+    out.error = options.error;
+    const double smallest = 0.1 * options.error * extent;
+    out.min_area = options.min_area.value_or(smallest * smallest);
+    out.adaptive = options.adaptive;
+    out.overshoot = options.overshoot;
+    out.column.factor =
+        options.form_factor == "disk" ? PointFactor::disk : PointFactor::lambert;
+    out.column.occlusion = options.occlusion;
+    out.column.seed = options.seed;
+    return out;
+}
+
+}  // namespace
+
+Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe,
+               const Cancel* cancel) {
+    const tbb::global_control threads(
+        tbb::global_control::max_allowed_parallelism,
+        options.threads > 0 ? static_cast<std::size_t>(options.threads)
+                            : static_cast<std::size_t>(tbb::info::default_concurrency()));
+    const Stopwatch clock;
+    const double size = extent(scene);
+    Radiosity radiosity(scene, make_groups(scene, grouping_of(options.groups)),
+                        mesh_options(options, size));
+    Shooting solver(radiosity, shooting_options(options, size));
+    run(solver, {options.unshot, options.time, cancel}, clock, observe);
+    const EnergyBalance energy = balance(radiosity, options.seed);
+    if (options.merge) merge_smooth(radiosity, solver.negligible());
+
+    Solution solution = extract_solution(radiosity);
+    solution.energy = energy;
+    SolveOptions used = options;
+    for (const Option& option : describe(used)) solution.options[option.name] = option.value_text();
+    solution.counters = {{"shots", static_cast<double>(solver.shots())},
+                         {"rays", static_cast<double>(solver.rays())},
+                         {"vertices", static_cast<double>(radiosity.mesh.vertices().size())},
+                         {"patches", static_cast<double>(radiosity.mesh.patches().size())},
+                         {"elements", static_cast<double>(radiosity.mesh.elements().size())},
+                         {"bytes", static_cast<double>(radiosity.bytes())}};
+    return solution;
 }
 
 }  // namespace exitance

@@ -165,8 +165,11 @@ PositionId Mesh::make_position(const Face& face, std::int32_t u, std::int32_t v)
 
 std::optional<VertexId> Mesh::find_vertex(const Face& face, std::int32_t u, std::int32_t v) const {
     const auto position = find_position(face, u, v);
-    if (!position) return std::nullopt;
-    const auto found = vertex_at_.find({position->value, face.smooth});
+    return position ? find_vertex(*position, face.smooth) : std::nullopt;
+}
+
+std::optional<VertexId> Mesh::find_vertex(PositionId position, std::uint32_t smooth) const {
+    const auto found = vertex_at_.find({position.value, smooth});
     return found == vertex_at_.end() ? std::nullopt : std::optional(found->second);
 }
 

@@ -115,6 +115,8 @@ class Mesh {
     /// The existing vertex of the face's smooth surface at these coordinates.
     std::optional<VertexId> find_vertex(const Face& face, std::int32_t u, std::int32_t v) const;
 
+    std::optional<VertexId> find_vertex(PositionId position, std::uint32_t smooth) const;
+
     /// Where irradiance would be evaluated for a midpoint of `element`.
     Vec3 sample_point(const Element& element, std::int32_t u, std::int32_t v) const;
 

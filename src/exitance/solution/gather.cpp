@@ -123,7 +123,7 @@ class Gatherer {
             std::max(1u, (options_.emitter_rays + rays_of_round - 1) / rays_of_round);
         for (std::uint32_t round = 0; round < most_rounds; ++round) {
             const auto seed = static_cast<std::uint32_t>(hash_bits(options_.seed, e, round));
-            find_visible_fractions(surfaces_.caster(), source, block, budget, seed, found);
+            find_visible_fractions(surfaces_.caster(), source, block, budget, true, seed, found);
             bool partly = false;
             for (std::size_t i = 0; i < block.size; ++i) {
                 if (budget.probe[i] == 0) continue;

@@ -22,7 +22,8 @@ RayBudget budget_for(const float* factors, std::size_t size, float brightness) {
     RayBudget budget;
     for (std::size_t r = 0; r < size; ++r) {
         const float contribution = factors[r] * brightness;
-        const float wanted = std::ceil(std::pow(2.0f * contribution, 4.0f / 3.0f));
+        const float wanted =
+            contribution > 0.5f ? std::ceil(std::pow(2.0f * contribution, 4.0f / 3.0f)) : 1.0f;
         const float most = std::clamp(wanted, 1.0f, 256.0f);
         budget.most[r] = static_cast<std::uint16_t>(most);
         budget.probe[r] = factors[r] > 0.0f
@@ -56,7 +57,7 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
                     budget.probe[r] = static_cast<std::uint8_t>(std::min<std::uint16_t>(
                         budget.most[r], std::uint16_t{255}));
         VisibleFractions seen;
-        find_visible_fractions(caster, source, block, budget, seed, seen);
+        find_visible_fractions(caster, source, block, budget, options.occlusion, seed, seen);
         for (std::size_t r = 0; r < block.size; ++r) {
             if (!budget.probe[r]) continue;
             ColumnEntry& entry = entries[begin + r];

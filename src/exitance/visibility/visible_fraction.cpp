@@ -98,7 +98,7 @@ struct Sums {
 
 void find_visible_fractions(const RayCaster& caster, const Source& source,
                             const ReceiverBlock& receivers, const RayBudget& budget,
-                            std::uint32_t seed, VisibleFractions& out) {
+                            bool occlusion, std::uint32_t seed, VisibleFractions& out) {
     const Parametrisation map(source);
     const auto clearance = static_cast<float>(caster.clearance());
     std::array<Sums, ReceiverBlock::capacity> sums{};
@@ -128,8 +128,8 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
         rays.active = 0;
         for (std::size_t i = 0; i < filled; ++i)
             rays.active |= static_cast<std::uint32_t>(task.above[i]) << i;
-        const std::uint32_t blocked = rays.active ? caster.occluded(rays) : 0;
-        out.rays += static_cast<std::uint64_t>(__builtin_popcount(rays.active));
+        const std::uint32_t blocked = rays.active && occlusion ? caster.occluded(rays) : 0;
+        if (occlusion) out.rays += static_cast<std::uint64_t>(__builtin_popcount(rays.active));
         for (std::size_t i = 0; i < filled; ++i) {
             Sums& sum = sums[owner[i]];
             ++sum.samples;

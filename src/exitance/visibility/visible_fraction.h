@@ -28,9 +28,10 @@ struct VisibleFractions {
 
 /// Casts `budget.probe` rays per receiver to jittered places of the source, and goes on to
 /// `budget.most` where they disagree. Samples are a low-discrepancy sequence scrambled per receiver,
-/// stratified in every power-of-two prefix, so that stopping early does not bias.
+/// stratified in every power-of-two prefix, so that stopping early does not bias. Without
+/// `occlusion` nothing blocks and no ray is cast.
 void find_visible_fractions(const RayCaster& caster, const Source& source,
                             const ReceiverBlock& receivers, const RayBudget& budget,
-                            std::uint32_t seed, VisibleFractions& out);
+                            bool occlusion, std::uint32_t seed, VisibleFractions& out);
 
 }  // namespace exitance

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/solution/extract.h"
+
+#include <fmt/format.h>
+#include <tsl/robin_map.h>
+
+#include <bit>
+#include <cmath>
+
+#include "exitance/run/random.h"
+
+namespace exitance {
+
+namespace {
+
+class Extraction {
+  public:
+    Extraction(const Radiosity& radiosity, Solution& out)
+        : radiosity_(radiosity), mesh_(radiosity.mesh), out_(out) {}
+
+    void run() {
+        find_leaves();
+        fill_buried();
+        std::vector<std::vector<std::array<std::uint32_t, 3>>> by_surface(
+            radiosity_.scene.surfaces.size());
+        for (const ElementId leaf : leaves_)
+            triangulate(leaf, by_surface[mesh_.face_of(mesh_[leaf]).surface]);
+        for (std::size_t s = 0; s < by_surface.size(); ++s) {
+            if (by_surface[s].empty()) continue;
+            const Surface& surface = radiosity_.scene.surfaces[s];
+            out_.parts.push_back({surface.name, surface.material,
+                                  radiosity_.groups.group_of_surface[s],
+                                  static_cast<std::uint32_t>(out_.triangles.size()),
+                                  static_cast<std::uint32_t>(by_surface[s].size())});
+            part_of_surface_.resize(s + 1);
+            part_of_surface_[s] = static_cast<std::uint32_t>(out_.parts.size() - 1);
+            out_.triangles.insert(out_.triangles.end(), by_surface[s].begin(), by_surface[s].end());
+        }
+        out_.irradiance = VertexField(out_.positions.size(), radiosity_.columns.count);
+        const std::size_t stride = radiosity_.columns.stride;
+        for (std::size_t v = 0; v < out_.positions.size(); ++v)
+            std::copy_n(&rows_[v * stride], stride, out_.irradiance[VertexId(v)].begin());
+        for (const Face& face : mesh_.faces())
+            if (radiosity_.emits(face))
+                out_.emitters.push_back(
+                    {mesh_.corners(face), face.count, part_of_surface_[face.surface]});
+    }
+
+  private:
+    void find_leaves() {
+        live_.assign(mesh_.positions().size(), 0);
+        for (const Patch& patch : mesh_.patches())
+            mesh_.for_leaves(patch.root, [&](ElementId id) {
+                leaves_.push_back(id);
+                for (const VertexId v : mesh_[id].corners())
+                    live_[mesh_[v].position.index()] = 1;
+            });
+    }
+
+    // Irradiance of vertices that lie under other objects: from the exposed corners next to them,
+    // so that no dark fringe surrounds what stands on a surface.
+    void fill_buried() {
+        const std::size_t stride = radiosity_.columns.stride;
+        buried_.assign(mesh_.vertices().size() * (any_buried() ? stride : 0), 0.0f);
+        if (buried_.empty()) return;
+        std::vector<std::uint32_t> count(mesh_.vertices().size(), 0);
+        for (const ElementId leaf : leaves_)
+            for (const VertexId v : mesh_[leaf].corners()) {
+                if (radiosity_.exposed[v.index()]) continue;
+                for (const VertexId w : mesh_[leaf].corners()) {
+                    if (!radiosity_.exposed[w.index()]) continue;
+                    ++count[v.index()];
+                    for (std::size_t c = 0; c < stride; ++c)
+                        buried_[v.index() * stride + c] += radiosity_.irradiance[w][c];
+                }
+            }
+        for (std::size_t v = 0; v < count.size(); ++v)
+            for (std::size_t c = 0; count[v] > 0 && c < stride; ++c)
+                buried_[v * stride + c] /= static_cast<float>(count[v]);
+    }
+
+    bool any_buried() const {
+        for (const char open : radiosity_.exposed)
+            if (!open) return true;
+        return false;
+    }
+
+    std::span<const float> light(VertexId v) const {
+        if (radiosity_.exposed[v.index()]) return radiosity_.irradiance[v];
+        return {&buried_[v.index() * radiosity_.columns.stride], radiosity_.columns.stride};
+    }
+
+    std::uint32_t append(const Vec3& position, const Vec3f& normal, std::span<const float> row) {
+        out_.positions.push_back(Vec3f(position));
+        out_.normals.push_back(normal);
+        rows_.insert(rows_.end(), row.begin(), row.end());
+        return static_cast<std::uint32_t>(out_.positions.size() - 1);
+    }
+
+    std::uint32_t vertex(VertexId v) {
+        const auto [slot, fresh] = index_.insert({key(mesh_[v].position, mesh_[v].smooth), 0u});
+        if (fresh) slot.value() = append(mesh_[mesh_[v].position], mesh_[v].normal, light(v));
+        return slot->second;
+    }
+
+    static std::uint64_t key(PositionId position, std::uint32_t smooth) {
+        return std::uint64_t{position.value} << 32 | smooth;
+    }
+
+    // The outline of a leaf: its corners and every place that others put on its sides.
+    void outline(const Element& element, std::vector<std::uint32_t>& loop) {
+        const std::uint32_t smooth = mesh_.face_of(element).smooth;
+        loop.clear();
+        for (std::uint32_t side = 0; side < element.count; ++side) {
+            const VertexId from = element.vertices[side];
+            const VertexId to = element.vertices[(side + 1) % element.count];
+            loop.push_back(vertex(from));
+            between_.clear();
+            mesh_.between(element, side, live_, between_);
+            for (std::size_t k = 0; k < between_.size(); ++k) {
+                if (const auto own = mesh_.find_vertex(between_[k], smooth)) {
+                    loop.push_back(vertex(*own));
+                    continue;
+                }
+                // Only other surfaces have a vertex here: interpolate between our nearest two.
+                VertexId before = from, after = to;
+                for (std::size_t j = k; j-- > 0 && before == from;)
+                    if (const auto own = mesh_.find_vertex(between_[j], smooth)) before = *own;
+                for (std::size_t j = k + 1; j < between_.size() && after == to; ++j)
+                    if (const auto own = mesh_.find_vertex(between_[j], smooth)) after = *own;
+                loop.push_back(interpolated(between_[k], smooth, before, after));
+            }
+        }
+    }
+
+    std::uint32_t interpolated(PositionId at, std::uint32_t smooth, VertexId a, VertexId b) {
+        const auto [slot, fresh] = index_.insert({key(at, smooth), 0u});
+        if (!fresh) return slot->second;
+        const Vec3 from = mesh_[mesh_[a].position], to = mesh_[mesh_[b].position];
+        const auto t = static_cast<float>(length(mesh_[at] - from) / length(to - from));
+        std::vector<float> row(radiosity_.columns.stride);
+        for (std::size_t c = 0; c < row.size(); ++c)
+            row[c] = (1.0f - t) * light(a)[c] + t * light(b)[c];
+        const Vec3f normal = normalized(mesh_[a].normal * (1.0f - t) + mesh_[b].normal * t);
+        const std::uint32_t made = append(mesh_[at], normal, row);
+        slot.value() = made;
+        return made;
+    }
+
+    void triangulate(ElementId leaf, std::vector<std::array<std::uint32_t, 3>>& triangles) {
+        const Element& element = mesh_[leaf];
+        outline(element, loop_);
+        if (loop_.size() == 3) {
+            triangles.push_back({loop_[0], loop_[1], loop_[2]});
+        } else if (loop_.size() == 4 && element.count == 4) {
+            // The diagonal along which the light changes less.
+            const std::size_t stride = radiosity_.columns.stride;
+            const auto level = [&](std::size_t i) {
+                return radiosity_.columns.luminance({&rows_[loop_[i] * stride], stride});
+            };
+            if (std::abs(level(0) - level(2)) <= std::abs(level(1) - level(3))) {
+                triangles.push_back({loop_[0], loop_[1], loop_[2]});
+                triangles.push_back({loop_[0], loop_[2], loop_[3]});
+            } else {
+                triangles.push_back({loop_[0], loop_[1], loop_[3]});
+                triangles.push_back({loop_[1], loop_[2], loop_[3]});
+            }
+        } else {
+            const std::uint32_t middle = centre(element);
+            for (std::size_t i = 0; i < loop_.size(); ++i)
+                triangles.push_back({middle, loop_[i], loop_[(i + 1) % loop_.size()]});
+        }
+    }
+
+    std::uint32_t centre(const Element& element) {
+        const float share = 1.0f / static_cast<float>(element.count);
+        Vec3 position;
+        Vec3f normal;
+        std::vector<float> row(radiosity_.columns.stride, 0.0f);
+        for (const VertexId v : element.corners()) {
+            position += mesh_[mesh_[v].position] * static_cast<double>(share);
+            normal += mesh_[v].normal;
+            for (std::size_t c = 0; c < row.size(); ++c) row[c] += share * light(v)[c];
+        }
+        return append(position, normalized(normal), row);
+    }
+
+    const Radiosity& radiosity_;
+    const Mesh& mesh_;
+    Solution& out_;
+    std::vector<ElementId> leaves_;
+    std::vector<char> live_;
+    std::vector<float> buried_;  ///< vertices × stride, or empty
+    std::vector<float> rows_;    ///< irradiance of the vertices made so far
+    tsl::robin_map<std::uint64_t, std::uint32_t> index_;
+    std::vector<PositionId> between_;
+    std::vector<std::uint32_t> loop_;
+    std::vector<std::uint32_t> part_of_surface_;
+};
+
+}  // namespace
+
+Solution extract_solution(const Radiosity& radiosity) {
+    const Scene& scene = radiosity.scene;
+    Solution out;
+    out.title = scene.title;
+    out.quantity = scene.quantity;
+    out.bands = scene.bands;
+    out.groups = radiosity.groups.groups;
+    out.materials = scene.materials;
+    out.cameras = scene.cameras;
+    out.grids = scene.grids;
+    out.scene_digest = digest(scene);
+    Extraction(radiosity, out).run();
+    return out;
+}
+
+std::string digest(const Scene& scene) {
+    std::uint64_t h = 0;
+    const auto add = [&](std::uint64_t bits) { h = hash_bits(h, bits); };
+    const auto number = [&](double value) { add(std::bit_cast<std::uint64_t>(value)); };
+    for (const Vec3& p : scene.points) number(p.x), number(p.y), number(p.z);
+    for (const Polygon& polygon : scene.polygons) {
+        for (const std::uint32_t corner : polygon.corners) add(corner);
+        add(polygon.surface);
+    }
+    for (const Surface& surface : scene.surfaces) add(surface.material);
+    for (const Material& material : scene.materials) {
+        for (const double r : material.reflectance) number(r);
+        for (const double e : material.exitance) number(e);
+        add(material.two_sided);
+    }
+    return fmt::format("{:016x}", h);
+}
+
+}  // namespace exitance

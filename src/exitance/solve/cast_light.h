@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a source to receivers: one shot.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/solve/light_source.h"
+#include "exitance/transport/column.h"
+
+namespace exitance {
+
+/// What receivers got, one entry or row each.
+struct Received {
+    std::vector<float> rows;     ///< irradiance per column: receivers × stride
+    std::vector<float> light;    ///< its luminance
+    std::vector<float> unblocked;  ///< the luminance there would be without occlusion
+
+    void reset(std::size_t count, std::size_t stride);
+    /// Visible share of the light, 1 where there is none.
+    float visible(std::size_t i) const { return unblocked[i] != 0 ? light[i] / unblocked[i] : 1.0f; }
+    std::span<const float> row(std::size_t i, std::size_t stride) const {
+        return {&rows[i * stride], stride};
+    }
+};
+
+/// Adds the light of `source` to `received`. `which` lists receivers; entry i of `received` belongs
+/// to receiver i. `tolerance`: luminance of irradiance that does not matter. Returns rays cast.
+std::uint64_t cast_light(const RayCaster& caster, const LightSource& source,
+                         const Receivers& receivers, std::span<const std::uint32_t> which,
+                         float tolerance, const ColumnOptions& options, std::size_t stride,
+                         Received& received);
+
+}  // namespace exitance

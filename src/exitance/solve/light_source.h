@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one shot sends out: a polygon with uniform exitance, or a patch whose exitance varies over
+// its quadtree.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "exitance/solve/radiosity.h"
+#include "exitance/visibility/receivers.h"
+
+namespace exitance {
+
+/// A node's exitance is the area-weighted mean of its children's. A receiver takes light from a
+/// node as a whole where that changes its irradiance by less than the tolerance, and from the
+/// children otherwise.
+struct LightSource {
+    struct Node {
+        Source source;
+        std::uint32_t number = 0;      ///< decorrelates the samples
+        std::uint32_t first_child = 0; ///< four nodes in a row; 0 = none
+        float luminance = 0;           ///< of the exitance
+        float spread = 0;              ///< largest difference to a descendant's luminance
+    };
+    std::vector<Node> nodes;       ///< root first
+    std::vector<float> exitance;   ///< nodes × stride
+
+    std::span<const float> row(std::size_t node, std::size_t stride) const {
+        return {&exitance[node * stride], stride};
+    }
+};
+
+/// The emission of a whole face. nullopt-free: call it for faces that emit.
+LightSource emission_of(const Radiosity& radiosity, FaceId face);
+
+/// What a patch still has to shoot, element by element: ρ H − shot, plus ρ times `ambient`
+/// [columns.stride], the share of overshooting.
+LightSource unshot_of(const Radiosity& radiosity, PatchId patch, std::span<const float> ambient);
+
+}  // namespace exitance

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/solve/radiosity.h"
+
+#include "exitance/math/polygon.h"
+#include "exitance/run/parallel.h"
+#include "exitance/visibility/exposure.h"
+
+namespace exitance {
+
+namespace {
+
+RayCaster make_caster(const Scene& scene) {
+    std::vector<RayCaster::Face> faces;
+    faces.reserve(scene.polygons.size());
+    for (const Polygon& p : scene.polygons)
+        faces.push_back({p.corners[0], p.corners[1], p.corners[2],
+                         p.size() == 4 ? p.corners[3] : p.corners[2]});
+    return RayCaster(scene.points, faces);
+}
+
+}  // namespace
+
+Columns::Columns(const std::vector<LightGroup>& light_groups, std::size_t band_count)
+    : groups(light_groups.size()),
+      bands(band_count),
+      count(groups * bands),
+      stride(padded_columns(count)),
+      weight(stride, 0.0f) {
+    const Spectrum band_weight = luminance_weights(bands);
+    for (std::size_t c = 0; c < count; ++c)
+        weight[c] = static_cast<float>(light_groups[c / bands].weight * band_weight[c % bands]);
+}
+
+float Columns::luminance(std::span<const float> row) const {
+    float sum = 0;
+    for (std::size_t c = 0; c < stride; ++c) sum += weight[c] * row[c];
+    return sum;
+}
+
+Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
+                     const MeshOptions& mesh_options)
+    : scene(the_scene),
+      groups(light_groups),
+      columns(groups.groups, scene.bands.size()),
+      caster(make_caster(scene)),
+      mesh(scene, mesh_options),
+      irradiance(0, columns.count),
+      shot(0, columns.count) {
+    rho_.assign(scene.materials.size() * columns.stride, 0.0f);
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        for (std::size_t c = 0; c < columns.count; ++c)
+            rho_[m * columns.stride + c] =
+                static_cast<float>(scene.materials[m].reflectance[c % columns.bands]);
+    emitted_.assign(scene.surfaces.size() * columns.stride, 0.0f);
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+        for (std::size_t b = 0; b < columns.bands; ++b)
+            emitted_[s * columns.stride + groups.group_of_surface[s] * columns.bands + b] =
+                static_cast<float>(scene.materials[scene.surfaces[s].material].exitance[b]);
+    for (const Polygon& p : scene.polygons) two_sided_.push_back(scene.material(p).two_sided);
+
+    std::uint32_t smooth_count = 0;
+    for (const Face& face : mesh.faces()) smooth_count = std::max(smooth_count, face.smooth + 1);
+    material_of_smooth_.assign(smooth_count, 0);
+    double reflecting = 0;
+    for (const Face& face : mesh.faces()) {
+        material_of_smooth_[face.smooth] = scene.surfaces[face.surface].material;
+        const auto corners = mesh.corners(face);
+        const double a = exitance::area({corners.data(), face.count});
+        area_ += a;
+        emitted_flux_ += a * static_cast<double>(columns.luminance(emitted(face)));
+        reflecting += a * luminance(scene.materials[material_of_smooth_[face.smooth]].reflectance);
+    }
+    mean_reflectance_ = area_ > 0 ? reflecting / area_ : 0.0;
+    admit_new_vertices();
+}
+
+std::span<const float> Radiosity::rho(const Face& face) const {
+    return {&rho_[scene.surfaces[face.surface].material * columns.stride], columns.stride};
+}
+
+std::span<const float> Radiosity::rho(VertexId vertex) const {
+    return {&rho_[material_of_smooth_[mesh[vertex].smooth] * columns.stride], columns.stride};
+}
+
+std::span<const float> Radiosity::emitted(const Face& face) const {
+    return {&emitted_[face.surface * columns.stride], columns.stride};
+}
+
+bool Radiosity::emits(const Face& face) const {
+    return scene.materials[scene.surfaces[face.surface].material].emits();
+}
+
+bool Radiosity::reflects(const Face& face) const {
+    for (const float r : rho(face))
+        if (r > 0) return true;
+    return false;
+}
+
+void Radiosity::admit_new_vertices() {
+    const std::size_t first = receivers.size(), count = mesh.vertices().size();
+    for (std::size_t v = first; v < count; ++v) {
+        const Vertex& vertex = mesh.vertices()[v];
+        receivers.add(vertex.sample - caster.middle(), Vec3(vertex.normal),
+                      static_cast<std::uint32_t>(v));
+    }
+    exposed.resize(count);
+    find_exposed(caster, two_sided_, receivers, first, std::span(exposed).subspan(first));
+    irradiance.resize_rows(count);
+    reflected.resize(count, 0.0f);
+    shot.resize_rows(mesh.elements().size());
+}
+
+void Radiosity::receive(VertexId vertex, std::span<const float> row) {
+    const auto H = irradiance[vertex];
+    const auto reflectance = rho(vertex);
+    float bounced = 0;
+    for (std::size_t c = 0; c < columns.stride; ++c) {
+        H[c] += row[c];
+        bounced += columns.weight[c] * reflectance[c] * row[c];
+    }
+    reflected[vertex.index()] += bounced;
+}
+
+void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
+    const Element& element = mesh[leaf];
+    std::fill(out.begin(), out.end(), 0.0f);
+    for (const VertexId v : element.corners())
+        if (exposed[v.index()])
+            for (std::size_t c = 0; c < columns.stride; ++c) out[c] += irradiance[v][c];
+    const auto reflectance = rho(mesh.face_of(element));
+    for (std::size_t c = 0; c < columns.stride; ++c)
+        out[c] *= reflectance[c] / static_cast<float>(element.count);
+}
+
+std::size_t Radiosity::bytes() const {
+    return mesh.bytes() + receivers.bytes() + exposed.capacity() + irradiance.bytes() +
+           reflected.capacity() * sizeof(float) + shot.bytes();
+}
+
+}  // namespace exitance

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every solver works on: B = E + ρ H, H = F B. The mesh, the irradiance H of its vertices, and
+// how much of each element's reflected exitance ρ H has been shot.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "exitance/mesh/field.h"
+#include "exitance/mesh/mesh.h"
+#include "exitance/scene/groups.h"
+#include "exitance/scene/scene.h"
+#include "exitance/visibility/ray_caster.h"
+#include "exitance/visibility/receivers.h"
+
+namespace exitance {
+
+/// Columns of a field: group · bands + band. Rows of columns are padded with zeros to `stride`.
+struct Columns {
+    std::size_t groups = 1, bands = 3, count = 3, stride = 4;
+    std::vector<float> weight;  ///< per column: group weight × luminance weight of the band
+
+    Columns(const std::vector<LightGroup>& light_groups, std::size_t band_count);
+    /// Σ weight · row: the one number that adaptive decisions look at.
+    float luminance(std::span<const float> row) const;
+};
+
+class Radiosity {
+  public:
+    Radiosity(const Scene& scene, const LightGroups& groups, const MeshOptions& mesh_options);
+
+    const Scene& scene;
+    LightGroups groups;
+    Columns columns;
+    RayCaster caster;
+    Mesh mesh;
+
+    Receivers receivers;        ///< one per vertex
+    std::vector<char> exposed;  ///< per vertex: open to the room (visibility/exposure.h)
+    VertexField irradiance;     ///< H; rows of vertices that are not exposed stay zero
+    std::vector<float> reflected;  ///< per vertex: luminance of ρ H
+    ElementField shot;             ///< per leaf: reflected exitance already shot
+
+    /// Reflectance per column of the face's material, and its emitted exitance.
+    std::span<const float> rho(const Face& face) const;
+    std::span<const float> rho(VertexId vertex) const;
+    std::span<const float> emitted(const Face& face) const;
+    bool emits(const Face& face) const;
+    bool reflects(const Face& face) const;
+
+    /// Makes receivers, rows and exposure for vertices that the mesh has gained.
+    void admit_new_vertices();
+    /// H of `vertex` += what one shot brought; keeps `reflected` in step.
+    void receive(VertexId vertex, std::span<const float> row);
+
+    /// Mean over an element of ρ H: corners that are not exposed count as covered, with no light.
+    void reflected_exitance(ElementId leaf, std::span<float> out) const;
+
+    /// Area-weighted mean reflectance (luminance) of the scene's faces.
+    double mean_reflectance() const { return mean_reflectance_; }
+    double area() const { return area_; }
+    /// Luminance-weighted emitted flux.
+    double emitted_flux() const { return emitted_flux_; }
+
+    const std::vector<char>& two_sided() const { return two_sided_; }
+
+    std::size_t bytes() const;
+
+  private:
+    std::vector<float> rho_;      ///< material × stride
+    std::vector<float> emitted_;  ///< surface × stride
+    std::vector<char> two_sided_;
+    std::vector<std::uint32_t> material_of_smooth_;
+    double mean_reflectance_ = 0, area_ = 0, emitted_flux_ = 0;
+};
+
+}  // namespace exitance

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Progressive refinement radiosity (Cohen, Chen, Wallace & Greenberg 1988): the patch with the most
+// unshot light shoots to all vertices; vertices receive as Wallace, Elmquist & Haines 1989 do, but
+// with the exact factor. In the terms of linear algebra this is Southwell's relaxation.
+#pragma once
+
+#include <vector>
+
+#include "exitance/solve/cast_light.h"
+#include "exitance/solve/refine.h"
+#include "exitance/solve/solver.h"
+
+namespace exitance {
+
+struct ShootingOptions {
+    double error = 0.02;      ///< RMS error of irradiance relative to its mean to aim at
+    double min_area = 0;      ///< smallest element [m²]
+    bool adaptive = true;
+    bool overshoot = true;
+    ColumnOptions column;
+};
+
+class Shooting final : public Solver {
+  public:
+    Shooting(Radiosity& radiosity, const ShootingOptions& options);
+
+    /// The first steps shoot the emission of the lamps, a face at a time; then patches reflect.
+    bool step() override;
+    double unshot() const override;
+    double enough() const override;
+    Progress progress() const override;
+
+    /// Luminance of irradiance far below the error asked for.
+    float negligible() const { return 0.25f * tolerance(); }
+
+    std::uint64_t shots() const { return shots_; }
+    std::uint64_t rays() const { return rays_; }
+
+    /// Ambient estimate of Cohen et al. 1988: irradiance (luminance) that everything still unshot
+    /// would add on average; falls to 0 as the solution converges.
+    double ambient() const;
+
+  private:
+    void shoot_emission();
+    void shoot_patch(PatchId patch, const std::vector<float>& ambient);
+    std::uint64_t emit_to(const Receivers& receivers, Received& received, std::size_t emitters);
+    void deliver(const Received& received);
+    void weigh_patches();
+    void find_unshot();
+    std::vector<float> ambient_row() const;
+    float tolerance() const;
+    RefineOptions refine_options(bool thorough) const;
+
+    Radiosity& radiosity_;
+    ShootingOptions options_;
+    std::vector<FaceId> emitters_;  ///< brightest first
+    bool emitted_ = false;
+
+    // Reflected light of a patch as a weighted sum over vertices, rebuilt when the mesh changes.
+    std::vector<std::uint32_t> weight_begin_, weight_vertex_;
+    std::vector<float> weight_;
+    std::size_t weighed_elements_ = 0;
+    std::vector<float> vertex_weight_;  ///< area that a vertex stands for
+    std::vector<float> patch_rho_;      ///< luminance of the reflectance × area
+    std::vector<float> patch_shot_;     ///< luminance of the mean exitance already shot
+    std::vector<float> patch_unshot_;  ///< luminance × area, signed
+    double unshot_flux_ = 0;           ///< Σ |patch_unshot_|
+    std::vector<double> reflected_flux_;  ///< Σ A ρ H per column
+    std::vector<double> shot_flux_;       ///< the part of it already shot
+    std::vector<double> rho_area_;        ///< Σ A ρ per column
+    double received_flux_ = 0;            ///< Σ A H, luminance, over the exposed area
+    double received_area_ = 0;
+    double mean_irradiance_ = 0;
+
+    Received received_;
+    std::vector<std::uint32_t> everyone_;
+    std::uint64_t shots_ = 0, rays_ = 0;
+};
+
+}  // namespace exitance

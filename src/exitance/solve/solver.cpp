@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/solve/solver.h"
+
+namespace exitance {
+
+Ended run(Solver& solver, const Stop& stop, const Stopwatch& clock, const Observer& observe) {
+    while (true) {
+        if (stop.cancel && stop.cancel->requested()) return Ended::cancelled;
+        if (stop.seconds && clock.seconds() >= *stop.seconds) return Ended::out_of_time;
+        if (solver.unshot() <= stop.unshot.value_or(solver.enough())) return Ended::converged;
+        if (!solver.step()) return Ended::converged;
+        if (observe) {
+            Progress progress = solver.progress();
+            progress.seconds = clock.seconds();
+            observe(progress);
+        }
+    }
+}
+
+}  // namespace exitance

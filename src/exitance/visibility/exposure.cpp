@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/visibility/exposure.h"
+
+#include <limits>
+
+#include "exitance/math/frame.h"
+#include "exitance/math/warp.h"
+#include "exitance/run/parallel.h"
+#include "exitance/run/random.h"
+
+namespace exitance {
+
+void find_exposed(const RayCaster& caster, std::span<const char> two_sided,
+                  const Receivers& receivers, std::size_t first, std::span<char> exposed) {
+    const double clearance = caster.clearance();
+    parallel_blocks(exposed.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const std::size_t r = first + i;
+            const Vec3 normal(receivers.nx[r], receivers.ny[r], receivers.nz[r]);
+            const Vec3 origin =
+                Vec3(receivers.x[r], receivers.y[r], receivers.z[r]) + normal * clearance;
+            const Frame frame(normal);
+            RayPacket rays;
+            for (std::uint32_t k = 0; k < RayPacket::width; ++k) {
+                const Vec3 d = frame.to_world(
+                    cosine_hemisphere(low_discrepancy(hash_bits(receivers.key[r], 0xe7u), k)));
+                rays.origin_x[k] = static_cast<float>(origin.x);
+                rays.origin_y[k] = static_cast<float>(origin.y);
+                rays.origin_z[k] = static_cast<float>(origin.z);
+                rays.direction_x[k] = static_cast<float>(d.x);
+                rays.direction_y[k] = static_cast<float>(d.y);
+                rays.direction_z[k] = static_cast<float>(d.z);
+                rays.near[k] = 0.0f;
+                rays.far[k] = std::numeric_limits<float>::infinity();
+            }
+            rays.active = 0xffffu;
+            RayCaster::PacketHits hits;
+            caster.closest(rays, hits);
+            int backs = 0;
+            for (std::size_t k = 0; k < RayPacket::width; ++k)
+                if (hits.primitive[k] != 0xffffffffu && !(hits.front >> k & 1u) &&
+                    !two_sided[hits.primitive[k]])
+                    ++backs;
+            exposed[i] = backs <= 8;
+        }
+    });
+}
+
+}  // namespace exitance
