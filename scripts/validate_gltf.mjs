@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // node scripts/validate_gltf.mjs FILE…: the report of the Khronos glTF validator on each file.
 // Exits 1 if any has errors, 2 for wrong use. The package `gltf-validator` is looked for in
-// $GLTF_VALIDATOR (a folder with node_modules), the working folder, and build/.
+// $GLTF_VALIDATOR (a folder with node_modules), build/node (scripts/setup), and the working folder.
 import { createRequire } from 'node:module';
 import { readFile } from 'node:fs/promises';
 import { basename, resolve } from 'node:path';
 
 function load_validator() {
-  const folders = [process.env.GLTF_VALIDATOR, '.', 'build'].filter(Boolean);
+  const folders = [process.env.GLTF_VALIDATOR, 'build/node', '.'].filter(Boolean);
   for (const folder of folders) {
     try {
       return createRequire(resolve(folder, 'package.json'))('gltf-validator');
@@ -15,7 +15,7 @@ function load_validator() {
       if (error.code !== 'MODULE_NOT_FOUND') throw error;
     }
   }
-  console.error('gltf-validator not found: npm install --prefix build gltf-validator');
+  console.error('gltf-validator not found: scripts/setup test');
   process.exit(2);
 }
 

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Irradiance at points, by whichever method is asked for.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "exitance/run/options.h"
+#include "exitance/solution/gather.h"
+
+namespace exitance {
+
+struct ProbeOptions {
+    std::string method = "interpolate";
+    double tolerance = 1e-3;
+    int rays = 1024;
+    std::uint64_t seed = 0;
+};
+
+/// Every member of `options` with its name, unit, range and reason.
+Options describe(ProbeOptions& options);
+
+/// Irradiance at each point on the side of its normal, points × solution columns
+/// [irradiance_unit]; NaN where interpolation finds no surface.
+std::vector<double> probe(const Solution& solution, std::span<const GatherPoint> points,
+                          const ProbeOptions& options = {});
+
+}  // namespace exitance
