@@ -30,13 +30,17 @@ void note(PerSurface& notes, const Polygon& polygon) {
 
 void warn(Scene& scene, const PerSurface& notes, const char* one, const char* several) {
     for (const auto& [s, mended] : notes) {
-        Place place = scene.surfaces[s].place;
-        if (mended.first_line > 0) place = {place.file, mended.first_line, 0};
-        scene.warnings.push_back(
-            {place,
-             fmt::format("{} of '{}' {}",
-                         mended.count == 1 ? "a polygon" : fmt::format("{} polygons", mended.count),
-                         scene.surfaces[s].name, mended.count == 1 ? one : several)});
+        const Surface& surface = scene.surfaces[s];
+        const std::string& material = scene.materials[surface.material].name;
+        Problem problem;
+        problem.place = surface.place;
+        if (mended.first_line > 0) problem.place = {surface.place.file, mended.first_line, 0};
+        problem.what = fmt::format(
+            "{} of '{}'{} {}",
+            mended.count == 1 ? "a polygon" : fmt::format("{} polygons", mended.count),
+            surface.name, material == surface.name ? "" : fmt::format(" ({})", material),
+            mended.count == 1 ? one : several);
+        scene.warnings.push_back(std::move(problem));
     }
 }
 
@@ -85,9 +89,9 @@ std::vector<std::uint32_t> distinct_corners(const Scene& scene, const Polygon& p
     return kept;
 }
 
-// Below this share of its diagonal squared an area is rounding.
+// Thinner than this share of its length, a polygon is the rounding of float coordinates.
 bool has_area(double area, double diagonal) {
-    return area > 1e-12 * diagonal * diagonal;
+    return area > 1e-7 * diagonal * diagonal;
 }
 
 // Which diagonal splits a quad into two triangles that face the same way; 0-2 if both or none do.
@@ -98,7 +102,7 @@ bool split_at_second_corner(const std::array<Vec3, 4>& c) {
     return second && !first;
 }
 
-bool is_convex(const std::array<Vec3, 4>& c, const Vec3& normal) {
+bool is_convex(std::span<const Vec3> c, const Vec3& normal) {
     for (std::size_t i = 0; i < 4; ++i) {
         const Vec3 turn = cross(c[(i + 1) % 4] - c[i], c[(i + 2) % 4] - c[(i + 1) % 4]);
         if (dot(turn, normal) < 0) return false;
@@ -110,6 +114,21 @@ double diagonal_of(std::span<const Vec3> corners) {
     Box box;
     for (const Vec3& c : corners) box.add(c);
     return box.diagonal();
+}
+
+enum class Shape { sound, empty, bent, dented };
+
+Shape shape_of(std::span<const Vec3> c, double scene_extent) {
+    if (c.size() < 3) return Shape::empty;
+    const double diagonal = diagonal_of(c);
+    if (c.size() == 3) return has_area(area(c), diagonal) ? Shape::sound : Shape::empty;
+    const double halves =
+        length(cross(c[2] - c[0], c[1] - c[0])) + length(cross(c[2] - c[0], c[3] - c[0]));
+    if (!has_area(halves, diagonal)) return Shape::empty;
+    if (!has_area(area(c), diagonal) ||
+        planarity_error(c) > planarity_tolerance(diagonal, scene_extent))
+        return Shape::bent;
+    return is_convex(c, vector_area(c)) ? Shape::sound : Shape::dented;
 }
 
 void mend_polygons(Scene& scene) {
@@ -130,29 +149,19 @@ void mend_polygons(Scene& scene) {
         Polygon now = polygon;
         for (std::size_t i = 0; i < 4; ++i)
             now.corners[i] = i < kept.size() ? kept[i] : Polygon::none;
-        const auto c = scene.corners(now);
-        const std::span<const Vec3> corners(c.data(), kept.size());
-        const double diagonal = diagonal_of(corners);
-        const bool quad = kept.size() == 4;
-        const bool surely_empty = kept.size() < 3 || (!quad && !has_area(area(corners), diagonal));
-        if (surely_empty || (quad && !has_area(length(cross(c[2] - c[0], c[1] - c[0])) +
-                                                   length(cross(c[2] - c[0], c[3] - c[0])),
-                                               diagonal))) {
-            note(empty, polygon);
-            continue;
+        std::array<Vec3, 4> c;
+        for (std::size_t i = 0; i < kept.size(); ++i) c[i] = scene.points[kept[i]];
+        const Shape shape = shape_of({c.data(), kept.size()}, extent);
+        if (shape == Shape::sound) mended.push_back(now);
+        if (shape == Shape::empty) note(empty, polygon);
+        if (shape == Shape::bent) note(bent, polygon);
+        if (shape == Shape::dented) note(dented, polygon);
+        if (shape == Shape::bent || shape == Shape::dented) {
+            const std::uint32_t first = split_at_second_corner(c) ? 1 : 0;
+            const auto corner = [&](std::uint32_t i) { return now.corners[(first + i) % 4]; };
+            add_triangle(now, {corner(0), corner(1), corner(2)});
+            add_triangle(now, {corner(0), corner(2), corner(3)});
         }
-        const bool flat =
-            !quad || (has_area(area(corners), diagonal) &&
-                      planarity_error(corners) <= planarity_tolerance(diagonal, extent));
-        if (flat && (!quad || is_convex(c, vector_area(corners)))) {
-            mended.push_back(now);
-            continue;
-        }
-        note(flat ? dented : bent, polygon);
-        const std::uint32_t first = split_at_second_corner(c) ? 1 : 0;
-        const auto corner = [&](std::uint32_t i) { return now.corners[(first + i) % 4]; };
-        add_triangle(now, {corner(0), corner(1), corner(2)});
-        add_triangle(now, {corner(0), corner(2), corner(3)});
     }
     scene.polygons = std::move(mended);
     warn(scene, empty, "has no area and is left out", "have no area and are left out");
