@@ -8,6 +8,8 @@ namespace exitance::limits {
 
 /// Coordinates are stored in float later on; beyond this nothing in a building is meant [m].
 inline constexpr double coordinate = 1e9;
+/// Lengths that must not be zero [m].
+inline constexpr double length = 1e-9;
 /// Emitted exitance per band; well inside float after multiplication by areas.
 inline constexpr double exitance = 1e20;
 /// Shooting patches of one polygon.

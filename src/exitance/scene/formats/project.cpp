@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/scene/formats/project.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "exitance/math/transform.h"
+#include "exitance/scene/formats/glob.h"
+#include "exitance/scene/formats/limits.h"
+#include "exitance/scene/formats/luminaires.h"
+#include "exitance/scene/formats/source_text.h"
+#include "exitance/scene/formats/toml_direction.h"
+#include "exitance/scene/formats/toml_table.h"
+#include "exitance/scene/merge.h"
+
+namespace exitance {
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+constexpr double farthest = limits::coordinate, shortest = limits::length;
+
+// Rodrigues' rotation of the unit axes by `angle` about the unit vector `a`.
+Transform rotation(const Vec3& a, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto turned = [&](const Vec3& v) {
+        return v * c + cross(a, v) * s + a * (dot(a, v) * (1 - c));
+    };
+    return {turned({1, 0, 0}), turned({0, 1, 0}), turned({0, 0, 1}), {}};
+}
+
+class ProjectReader {
+  public:
+    ProjectReader(const std::filesystem::path& path, const toml::table& root,
+                  const ReadGeometry& read_geometry)
+        : path_(path),
+          root_(path.string(), root, "a project",
+                {"title", "quantity", "geometry", "polygon", "material", "luminaire", "camera",
+                 "grid", "solve"}),
+          read_geometry_(read_geometry) {}
+
+    Scene read() {
+        scene_.title = root_.text("title").value_or(as_utf8(path_.stem().string()));
+        std::vector<Part> parts;
+        for (const toml::table* table : root_.tables("geometry")) parts.push_back(geometry(*table));
+        for (const toml::table* table : root_.tables("material")) demand_of_material(*table);
+        for (const toml::table* table : root_.tables("luminaire")) demand_of_luminaire(*table);
+        decide_quantity(parts);
+        for (Part& part : parts) {
+            if (scene_.polygons.size() + part.scene.polygons.size() > limits::elements)
+                throw Error(part.place, fmt::format("with this file the scene has more than {} "
+                                                    "polygons",
+                                                    limits::elements));
+            merge(scene_, std::move(part.scene), part.placing);
+        }
+        for (const toml::table* table : root_.tables("material")) material(*table);
+        for (const toml::table* table : root_.tables("polygon")) polygon(*table);
+        for (const toml::table* table : root_.tables("luminaire")) luminaire(*table);
+        for (const toml::table* table : root_.tables("camera")) camera(*table);
+        for (const toml::table* table : root_.tables("grid")) grid(*table);
+        settings();
+        return std::move(scene_);
+    }
+
+  private:
+    struct Part {
+        Scene scene;
+        Transform placing;
+        Place place;
+    };
+
+    TomlTable open(const toml::table& table, const std::string& name,
+                   const std::vector<std::string>& keys) const {
+        return {root_.file(), table, "[[" + name + "]]", keys};
+    }
+    TomlTable open_material(const toml::table& table) const {
+        return open(
+            table, "material",
+            {"match", "name", "reflectance", "exitance", "luminance", "group", "two_sided"});
+    }
+    TomlTable open_luminaire(const toml::table& table) const {
+        return open(table, "luminaire", luminaire_keys());
+    }
+
+    // [[geometry]]: the file first as it is in its own unit and axes, then scaled, turned, moved.
+    Part geometry(const toml::table& from) {
+        const TomlTable table =
+            open(from, "geometry", {"file", "unit", "up", "translate", "rotate", "scale"});
+        table.require("file");
+        const std::filesystem::path file = path_.parent_path() / *table.text("file");
+        std::error_code ignored;
+        if (!std::filesystem::exists(file, ignored))
+            table.refuse("file", "a file; there is none at " + file.string());
+
+        Transform placing = Transform::scale(unit(table));
+        const std::string up = table.text("up").value_or("y");
+        const Transform x_up{{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}, {}};
+        const Transform z_up{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {}};
+        if (up != "x" && up != "y" && up != "z") table.refuse("up", "x, y or z");
+        if (up == "x") placing = x_up.after(placing);
+        if (up == "z") placing = z_up.after(placing);
+        placing =
+            Transform::scale(table.number("scale", shortest, farthest).value_or(1)).after(placing);
+        if (const auto turn = table.numbers("rotate", 4, -farthest, farthest)) {
+            const Vec3 axis{(*turn)[0], (*turn)[1], (*turn)[2]};
+            if (!(length(axis) > shortest))
+                table.refuse("rotate", "[x, y, z, degrees] with an axis that is not zero");
+            placing = rotation(normalized(axis), (*turn)[3] * pi / 180).after(placing);
+        }
+        placing.origin += table.vector("translate").value_or(Vec3{});
+        return {read_geometry_(file, table.place("file")), placing, table.place("file")};
+    }
+
+    static double unit(const TomlTable& table) {
+        static const std::map<std::string, double> metres{
+            {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
+        const toml::node* node = table.node("unit");
+        if (!node) return 1;
+        if (node->is_number()) return *table.number("unit", shortest, farthest);
+        const auto word = table.text("unit");
+        const auto found = metres.find(*word);
+        if (found == metres.end()) table.refuse("unit", "m, cm, mm, in, ft or a number of metres");
+        return found->second;
+    }
+
+    // What a key in lumens, cd/m² or watts says about the quantity of the scene.
+    void demand(const TomlTable& table, const std::string& key, Quantity quantity) {
+        if (!table.has(key)) return;
+        if (!quantity_) quantity_ = given_quantity();
+        if (!quantity_) quantity_ = quantity;
+        if (*quantity_ != quantity)
+            throw Error(table.place(key),
+                        fmt::format("'{}' is {}, but the quantity of this project is {}", key,
+                                    quantity_name(quantity), quantity_name(*quantity_)));
+    }
+    void demand_of_material(const toml::table& table) {
+        demand(open_material(table), "luminance", Quantity::photometric);
+    }
+    void demand_of_luminaire(const toml::table& from) {
+        const TomlTable table = open_luminaire(from);
+        demand(table, "lumens", Quantity::photometric);
+        demand(table, "watts", Quantity::radiometric);
+    }
+
+    static std::string quantity_name(Quantity quantity) {
+        if (quantity == Quantity::radiometric) return "radiometric";
+        return quantity == Quantity::photometric ? "photometric" : "unitless";
+    }
+
+    std::optional<Quantity> given_quantity() const {
+        const auto word = root_.text("quantity");
+        if (!word) return std::nullopt;
+        for (const Quantity q : {Quantity::unitless, Quantity::radiometric, Quantity::photometric})
+            if (*word == quantity_name(q)) return q;
+        root_.refuse("quantity", "radiometric, photometric or unitless");
+    }
+
+    // What the project says; else what its own keys are measured in; else what the files say.
+    void decide_quantity(const std::vector<Part>& parts) {
+        if (!quantity_) quantity_ = given_quantity();
+        for (const Part& part : parts)
+            if (!quantity_ && part.scene.quantity != Quantity::unitless)
+                quantity_ = part.scene.quantity;
+        scene_.quantity = quantity_.value_or(Quantity::unitless);
+    }
+
+    // Emission of a material: exitance M, or luminance L of an even glow: M = π L (Lambert).
+    std::optional<Spectrum> emission(const TomlTable& table) const {
+        if (table.has("exitance") && table.has("luminance"))
+            throw Error(table.place("luminance"),
+                        "found both 'exitance' and 'luminance', expected one of them");
+        if (table.has("exitance")) return table.spectrum("exitance", 0, limits::exitance);
+        auto value = table.spectrum("luminance", 0, limits::exitance / 4);
+        if (value)
+            for (double& band : *value) band *= pi;
+        return value;
+    }
+
+    std::vector<std::string> material_names() const {
+        std::vector<std::string> names;
+        for (const Material& material : scene_.materials)
+            if (std::find(names.begin(), names.end(), material.name) == names.end())
+                names.push_back(material.name);
+        return names;
+    }
+
+    void material(const toml::table& from) {
+        const TomlTable table = open_material(from);
+        if (table.has("match") == table.has("name"))
+            throw Error(
+                table.place(),
+                table.has("name")
+                    ? "found both 'match' and 'name', expected one: match changes materials, "
+                      "name makes one"
+                    : "[[material]] has neither 'match' nor 'name'");
+        if (table.has("name")) return new_material(table);
+        const std::string pattern = *table.text("match");
+        std::size_t matched = 0;
+        for (Material& material : scene_.materials) {
+            if (!matches_glob(pattern, material.name)) continue;
+            ++matched;
+            change(material, table);
+        }
+        if (matched > 0) return;
+        const std::vector<std::string> names = material_names();
+        std::string known;
+        for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 8); ++i)
+            known += (i > 0 ? ", " : "") + names[i];
+        if (names.size() > 8) known += ", …";
+        throw Error(
+            table.place("match"),
+            fmt::format("{} matches no material{}; there {}", in_quotes(pattern),
+                        suggestion(pattern, names), names.empty() ? "are none" : "are: " + known));
+    }
+
+    void change(Material& material, const TomlTable& table) const {
+        if (const auto rho = table.spectrum("reflectance", 0, 1)) {
+            material.reflectance = *rho;
+            material.place = table.place("reflectance");
+        }
+        if (const auto e = emission(table)) material.exitance = *e;
+        if (const auto group = table.text("group")) material.group = *group;
+        if (const auto both = table.flag("two_sided")) material.two_sided = *both;
+    }
+
+    void new_material(const TomlTable& table) {
+        Material material;
+        material.name = *table.text("name");
+        material.place = table.place("name");
+        const auto names = material_names();
+        if (std::find(names.begin(), names.end(), material.name) != names.end())
+            throw Error(material.place,
+                        fmt::format("there is already a material {}; 'match' changes it",
+                                    in_quotes(material.name)));
+        material.exitance.assign(3, 0.0);
+        if (!table.has("exitance") && !table.has("luminance")) table.require("reflectance");
+        material.reflectance.assign(3, 0.0);
+        change(material, table);
+        scene_.add_material(std::move(material));
+    }
+
+    // Corners at the same place are one point, so that neighbours share it.
+    std::uint32_t point(const Vec3& p) {
+        const auto [found, fresh] = points_.try_emplace(std::array<double, 3>{p.x, p.y, p.z}, 0U);
+        if (fresh) found->second = scene_.add_point(p);
+        return found->second;
+    }
+
+    void polygon(const toml::table& from) {
+        const TomlTable table = open(from, "polygon", {"corners", "material", "patches", "name"});
+        table.require("corners");
+        table.require("material");
+        const std::string material = *table.text("material");
+        const auto found =
+            std::find_if(scene_.materials.begin(), scene_.materials.end(),
+                         [&](const Material& candidate) { return candidate.name == material; });
+        if (found == scene_.materials.end())
+            throw Error(table.place("material"),
+                        fmt::format("there is no material {}{}", in_quotes(material),
+                                    suggestion(material, material_names())));
+        const auto index = static_cast<std::uint32_t>(found - scene_.materials.begin());
+        const std::string name = table.text("name").value_or(material);
+        const auto [entry, fresh] = surfaces_.try_emplace({name, index}, 0U);
+        if (fresh) {
+            entry->second = scene_.add_surface(name, index);
+            scene_.surfaces[entry->second].place = table.place();
+        }
+        const std::vector<Vec3> corners = *table.points("corners");
+        if (corners.size() != 3 && corners.size() != 4)
+            throw Error(table.place("corners"),
+                        fmt::format("found {} corners, expected 3 or 4", corners.size()));
+        Polygon polygon;
+        for (std::size_t i = 0; i < corners.size(); ++i) polygon.corners[i] = point(corners[i]);
+        polygon.surface = entry->second;
+        polygon.patches = table.count("patches", 1, limits::patches).value_or(0);
+        polygon.line = static_cast<std::uint32_t>(table.place().line);
+        scene_.polygons.push_back(polygon);
+    }
+
+    void luminaire(const toml::table& from) { add_luminaire(scene_, open_luminaire(from)); }
+
+    void camera(const toml::table& from) {
+        const TomlTable table =
+            open(from, "camera", {"name", "eye", "look_at", "up", "fov", "aspect"});
+        table.require("eye");
+        table.require("look_at");
+        Camera camera;
+        camera.name =
+            table.text("name").value_or(fmt::format("camera {}", scene_.cameras.size() + 1));
+        camera.eye = *table.vector("eye");
+        camera.look_at = *table.vector("look_at");
+        const Vec3 view = camera.look_at - camera.eye;
+        if (!(length(view) > shortest))
+            throw Error(table.place("look_at"),
+                        "found the same point as 'eye', expected another one");
+        camera.up = up_beside(table, normalized(view));
+        camera.fov_y = table.number("fov", 0.01, 179).value_or(45);
+        camera.aspect = table.number("aspect", 1e-3, 1e3);
+        for (const Camera& other : scene_.cameras)
+            if (other.name == camera.name)
+                throw Error(table.place("name"),
+                            fmt::format("there is already a camera {}", in_quotes(camera.name)));
+        scene_.cameras.push_back(std::move(camera));
+    }
+
+    void grid(const toml::table& from) {
+        const TomlTable table =
+            open(from, "grid", {"name", "origin", "u", "v", "columns", "rows", "normal"});
+        for (const char* key : {"origin", "u", "v", "columns", "rows"}) table.require(key);
+        SensorGrid grid;
+        grid.name = table.text("name").value_or(fmt::format("grid {}", scene_.grids.size() + 1));
+        grid.origin = *table.vector("origin");
+        grid.u = *table.vector("u");
+        grid.v = *table.vector("v");
+        grid.columns = *table.count("columns", 1, 10000);
+        grid.rows = *table.count("rows", 1, 10000);
+        const Vec3 across = cross(grid.u, grid.v);
+        if (!table.has("normal") && !(length(across) > 0))
+            throw Error(table.place("v"), "found 'v' along 'u', expected another direction");
+        grid.normal = direction(table, "normal", normalized(across));
+        scene_.grids.push_back(std::move(grid));
+    }
+
+    // [solve]: kept as text; whoever solves knows the names.
+    void settings() {
+        const toml::node* node = root_.node("solve");
+        if (!node) return;
+        if (!node->is_table()) root_.refuse("solve", "a table that begins with [solve]");
+        for (const auto& [key, value] : *node->as_table()) {
+            Setting setting;
+            setting.name = std::string(key.str());
+            setting.place = place_of(root_.file(), value);
+            if (value.is_string())
+                setting.value = value.as_string()->get();
+            else if (value.is_boolean())
+                setting.value = value.as_boolean()->get() ? "true" : "false";
+            else if (value.is_integer())
+                setting.value = std::to_string(value.as_integer()->get());
+            else if (value.is_floating_point())
+                setting.value = fmt::format("{}", value.as_floating_point()->get());
+            else
+                throw Error(setting.place, fmt::format("{}: found {}, expected a word, a number, "
+                                                       "true or false",
+                                                       setting.name, kind_of(value)));
+            scene_.settings.push_back(std::move(setting));
+        }
+    }
+
+    std::filesystem::path path_;
+    TomlTable root_;
+    const ReadGeometry& read_geometry_;
+    Scene scene_;
+    std::optional<Quantity> quantity_;
+    std::map<std::array<double, 3>, std::uint32_t> points_;
+    std::map<std::pair<std::string, std::uint32_t>, std::uint32_t> surfaces_;
+};
+
+}  // namespace
+
+Scene parse_project(const std::filesystem::path& path, std::string_view text,
+                    const ReadGeometry& read_geometry) {
+    const toml::table root = parse_toml(path.string(), text);
+    return ProjectReader(path, root, read_geometry).read();
+}
+
+}  // namespace exitance
