@@ -262,7 +262,7 @@ bool is_solution(const std::filesystem::path& path) {
     try {
         const json root = json::parse(read_glb(path, GlbContent::json_only).json);
         return root.is_object() &&
-               root.value("/asset/extras/exitance"_json_pointer, json()) != json();
+               !root.value("/asset/extras/exitance"_json_pointer, json()).is_null();
     } catch (const Error&) {
         return false;
     } catch (const json::exception&) {

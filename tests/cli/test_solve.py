@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: Apache-2.0
+"""exitance solve: what it prints, writes and refuses."""
+import fcntl
+import json
+import os
+import pty
+import signal
+import struct
+import termios
+import unittest
+
+from program import (BAD_INPUT, COULD_NOT_FINISH, PROGRAM, WRONG_USE, ProgramTest, box, extras,
+                     glb_json)
+
+QUICK = ("--error", "0.2")
+LONG = ("--error", "0.0005")
+
+
+class Solve(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.scene = self.write("box.geom", box())
+        self.output = self.folder / "box.glb"
+
+    def solve(self, *arguments, **more):
+        return self.succeed("solve", self.scene, "-o", self.output, *arguments, **more)
+
+    def test_says_where_the_light_went(self):
+        done = self.solve(*QUICK)
+        self.assertEqual(done.stderr, "")
+        self.assertRegex(done.stdout, r"box\.glb: \d+ vertices, \d+ triangles, light groups: ")
+        self.assertRegex(done.stdout, r"energy .* emitted = .* absorbed .* escaped .* unshot")
+        self.assertRegex(done.stdout, r"error .* % ± .* % \(RMS of irradiance")
+        self.assertRegex(done.stdout, r"work .* shots, .* rays, .* s\n")
+        # A lamp of 0.2 m × 0.2 m and 10 per square metre.
+        self.assertRegex(done.stdout, r"energy +0\.4 emitted")
+        self.assertEqual(os.listdir(self.folder).count("box.glb"), 1)
+        self.assertEqual(len(os.listdir(self.folder)), 2)
+
+    def test_quiet(self):
+        done = self.solve(*QUICK, "--quiet")
+        self.assertEqual(done.stdout + done.stderr, "")
+        self.assertTrue(glb_json(self.output)["meshes"])
+
+    def test_json_log(self):
+        done = self.solve(*QUICK, "--log", "json")
+        steps = [json.loads(line) for line in done.stderr.splitlines()]
+        self.assertGreater(len(steps), 2)
+        for step in steps:
+            self.assertLessEqual({"phase", "seconds", "fraction_left", "shots", "rays", "vertices"},
+                                 set(step))
+        for name in ("seconds", "shots", "rays"):
+            values = [step[name] for step in steps]
+            self.assertEqual(values, sorted(values), name)
+        self.assertTrue(all(0 <= step["fraction_left"] <= 1 for step in steps))
+
+    def test_bar_on_a_terminal(self):
+        master, terminal = pty.openpty()
+        fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", 25, 60, 0, 0))
+        pid = os.fork()
+        if pid == 0:
+            os.dup2(terminal, 2)
+            os.close(1)
+            os.execv(PROGRAM, [PROGRAM, "solve", str(self.scene), "-o", str(self.output), *QUICK])
+        os.close(terminal)
+        shown = b""
+        try:
+            while piece := os.read(master, 4096):
+                shown += piece
+        except OSError:  # the other end is closed
+            pass
+        self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]), 0)
+        frames = shown.decode().split("\r")
+        bars = [f for f in frames if "█" in f or "─" in f]
+        self.assertTrue(bars, frames)
+        for bar in bars:
+            self.assertLess(len(bar.removesuffix("\x1b[K")), 60)
+        self.assertEqual(frames[-1], "\x1b[K", "the bar is removed at the end")
+
+    def test_threads_do_not_change_a_byte(self):
+        files = []
+        for threads in (1, 2):
+            self.output = self.folder / f"{threads}.glb"
+            self.solve(*QUICK, "--quiet", "--threads", threads)
+            files.append(self.output.read_bytes())
+        self.assertEqual(files[0], files[1])
+
+    def test_seed_changes_the_samples(self):
+        files = []
+        for seed in (1, 2):
+            self.output = self.folder / f"{seed}.glb"
+            self.solve(*QUICK, "--quiet", "--seed", seed)
+            files.append(self.output.read_bytes())
+        self.assertNotEqual(files[0], files[1])
+
+    def test_interrupt_keeps_what_is_solved(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            with self.subTest(signal=number):
+                process = self.start("solve", self.scene, "-o", self.output, *LONG, "--log", "json")
+                while json.loads(process.stderr.readline())["shots"] < 1:
+                    pass
+                process.send_signal(number)
+                out, err = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 0, err)
+                self.assertIn("stopped early", out)
+                self.assertGreater(extras(self.output)["energy"]["unshot"], 0)
+                self.succeed("info", self.output)
+                self.output.unlink()
+
+    def test_time_limit(self):
+        done = self.solve(*LONG, "--time", "0.5", "--log", "json")
+        last = json.loads(done.stderr.splitlines()[-1])
+        self.assertLess(last["seconds"], 10)  # a shot and the bookkeeping after it, amply
+        self.succeed("info", self.output)
+
+    def test_settings_of_a_project(self):
+        project = self.write("box.toml", 'title = "box"\n\n[[geometry]]\nfile = "box.geom"\n\n'
+                                         "[solve]\nerror = 0.25\nadaptive = false\n")
+        self.succeed("solve", project, "-o", self.output)
+        self.assertEqual(float(extras(self.output)["options"]["error"]), 0.25)
+        self.assertEqual(extras(self.output)["options"]["adaptive"], "false")
+        self.succeed("solve", project, "-o", self.output, "--error", "0.3", "--adaptive")
+        self.assertEqual(float(extras(self.output)["options"]["error"]), 0.3)
+        self.assertEqual(extras(self.output)["options"]["adaptive"], "true")
+
+    def test_wrong_setting_of_a_project(self):
+        for line, message in [("eror = 0.1", r"box\.toml:5:\d+: .*'eror', did you mean 'error'"),
+                              ("error = 7", r"box\.toml:5:\d+: .*'7'.* 0\.0001 … 1")]:
+            project = self.write("box.toml", '[[geometry]]\nfile = "box.geom"\n\n[solve]\n' + line)
+            self.refuse(BAD_INPUT, message, "solve", project, "-o", self.output)
+
+    def test_bad_scenes(self):
+        good = box()
+        for name, text, message in [
+                ("missing.geom", None, "missing.geom: "),
+                ("empty.geom", "", r"empty\.geom"),
+                ("folder.geom", "folder", r"folder\.geom"),
+                ("cut.geom", good[:len(good) // 2], r"cut\.geom:\d+:\d+: "),
+                ("nan.geom", good.replace("0.05", "nan", 1).replace("0.4", "nan", 1),
+                 r"nan\.geom:\d+:\d+: .*nan"),
+                ("many.geom", good.replace("patches 7", "patches 4000000000"),
+                 r"many\.geom:\d+:\d+: "),
+                ("index.geom", good.replace("4 1 3 4 2", "4 1 3 4 99"), r"index\.geom:\d+:\d+: .*99"),
+                ("bright.geom", good.replace("color 0.5", "color 1.5", 1),
+                 r"bright\.geom:\d+:\d+: .*1\.5"),
+                ("binary.glb", bytes(range(256)) * 4, r"binary\.glb"),
+                ("noise.toml", "= = =\n", r"noise\.toml:1:\d+: "),
+        ]:
+            with self.subTest(scene=name):
+                if text == "folder":
+                    (self.folder / name).mkdir()
+                elif text is not None:
+                    self.write(name, text)
+                self.refuse(BAD_INPUT, message, "solve", name, "-o", self.output)
+
+    def test_output_that_cannot_be_written(self):
+        for output, code, message in [
+                ("nowhere/box.glb", COULD_NOT_FINISH, "cannot write nowhere/box.glb"),
+                (".", WRONG_USE, "ends in .glb"),
+                ("box.png", WRONG_USE, r"'box\.png' .* ends in \.glb"),
+                ("/dev/full", COULD_NOT_FINISH, "cannot write /dev/full: No space left on device"),
+        ]:
+            with self.subTest(output=output):
+                self.refuse(code, message, "solve", self.scene, "-o", output, *QUICK)
+        self.assertTrue(os.path.exists("/dev/full"))
+        (self.folder / "folder.glb").mkdir()
+        self.refuse(COULD_NOT_FINISH, "cannot write folder.glb: Is a directory", "solve",
+                    self.scene, "-o", "folder.glb")
+
+    def test_read_only_folder(self):
+        locked = self.folder / "locked"
+        locked.mkdir()
+        locked.chmod(0o555)
+        self.folder.chmod(0o755)
+        # Root may write anywhere: try it as nobody.
+        nobody = {"user": 65534, "group": 65534} if os.getuid() == 0 else {}
+        self.refuse(COULD_NOT_FINISH, "cannot write .*Permission denied", "solve", self.scene, "-o",
+                    locked / "box.glb", **nobody)
+
+    def test_output_would_replace_the_input(self):
+        self.solve(*QUICK)
+        self.refuse(WRONG_USE, "would replace the input", "solve", self.output, "-o", self.output)
+
+    def test_refused_before_the_work(self):
+        # At this error the solve would take minutes.
+        self.refuse(COULD_NOT_FINISH, "cannot write", "solve", self.scene, "-o", "nowhere/x.glb",
+                    *LONG)
+
+    def test_earlier_output_survives_a_failure(self):
+        self.solve(*QUICK)
+        before = self.output.read_bytes()
+        self.write("cut.geom", box()[:200])
+        self.refuse(BAD_INPUT, "cut.geom", "solve", "cut.geom", "-o", self.output)
+        self.assertEqual(self.output.read_bytes(), before)
+
+    def test_out_of_memory(self):
+        # The program alone maps some hundred MB; the solve is what does not fit.
+        import resource
+
+        def little_memory():
+            resource.setrlimit(resource.RLIMIT_DATA, (300 << 20, 300 << 20))
+
+        self.refuse(COULD_NOT_FINISH, "memory", "solve", self.scene, "-o", self.output, "--error",
+                    "0.0001", "--min-area", "1e-12", preexec_fn=little_memory)
+
+    def test_unlit_scene(self):
+        dark = self.write("dark.geom", box(lamp=False))
+        done = self.run_program("solve", dark, "-o", self.output, *QUICK)
+        self.assertIn(done.returncode, (0, BAD_INPUT))
+        self.assertRegex(done.stdout + done.stderr, "nothing is emitted|unlit|no light|emit")
+
+
+if __name__ == "__main__":
+    unittest.main()
