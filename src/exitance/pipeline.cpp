@@ -45,17 +45,38 @@ ShootingOptions shooting_options(const SolveOptions& options, double extent) {
     out.min_area = options.min_area.value_or(smallest * smallest);
     out.adaptive = options.adaptive;
     out.overshoot = options.overshoot;
-    out.column.factor =
-        options.form_factor == "disk" ? PointFactor::disk : PointFactor::lambert;
+    out.column.factor = options.form_factor == "disk" ? PointFactor::disk : PointFactor::lambert;
     out.column.occlusion = options.occlusion;
     out.column.seed = options.seed;
     return out;
 }
 
+Solution snapshot(const Radiosity& radiosity, const std::vector<float>& ambient) {
+    Solution out = extract_solution(radiosity);
+    for (std::size_t v = 0; v < out.irradiance.rows(); ++v) {
+        const auto row = out.irradiance[VertexId(v)];
+        for (std::size_t c = 0; c < out.columns(); ++c) row[c] += ambient[c];
+    }
+    return out;
+}
+
+Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
+                        const Radiosity& radiosity, const Shooting& solver) {
+    if (!snapshots.take) return observe;
+    return [&, next = snapshots.every](const Progress& progress) mutable {
+        if (observe) observe(progress);
+        if (progress.shots < next) return;
+        next = progress.shots + snapshots.every;
+        snapshots.take(snapshot(radiosity, snapshots.ambient
+                                               ? solver.ambient_per_column()
+                                               : std::vector<float>(radiosity.columns.stride)));
+    };
+}
+
 }  // namespace
 
 Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe,
-               const Cancel* cancel) {
+               const Cancel* cancel, const Snapshots& snapshots) {
     const tbb::global_control threads(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
@@ -65,14 +86,17 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     Radiosity radiosity(scene, make_groups(scene, grouping_of(options.groups)),
                         mesh_options(options, size));
     Shooting solver(radiosity, shooting_options(options, size));
-    run(solver, {options.unshot, options.time, cancel}, clock, observe);
+    run(solver, {options.unshot, options.time, options.next_shot, cancel}, clock,
+        with_snapshots(observe, snapshots, radiosity, solver));
     const EnergyBalance energy = balance(radiosity, options.seed);
     if (options.merge) merge_smooth(radiosity, solver.negligible());
 
     Solution solution = extract_solution(radiosity);
     solution.energy = energy;
     SolveOptions used = options;
-    for (const Option& option : describe(used)) solution.options[option.name] = option.value_text();
+    for (const Option& option : describe(used))
+        if (option.name != "threads")  // the bytes do not depend on it
+            solution.options[option.name] = option.value_text();
     solution.counters = {{"shots", static_cast<double>(solver.shots())},
                          {"rays", static_cast<double>(solver.rays())},
                          {"vertices", static_cast<double>(radiosity.mesh.vertices().size())},

@@ -2,6 +2,9 @@
 // From a scene to its light.
 #pragma once
 
+#include <cstdint>
+#include <functional>
+
 #include "exitance/run/progress.h"
 #include "exitance/scene/scene.h"
 #include "exitance/solution/solution.h"
@@ -9,9 +12,16 @@
 
 namespace exitance {
 
+/// The solution so far, handed out while the scene is being lit.
+struct Snapshots {
+    std::uint64_t every = 1;               ///< shots from one to the next
+    bool ambient = false;                  ///< with an estimate of what is still unshot
+    std::function<void(Solution)> take{};  ///< called from the calling thread
+};
+
 /// Lights the scene. `observe` is called from the calling thread between shots; when `cancel` is
 /// requested the solution so far is returned. Throws Error for unusable options or scenes.
 Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe = {},
-               const Cancel* cancel = nullptr);
+               const Cancel* cancel = nullptr, const Snapshots& snapshots = {});
 
 }  // namespace exitance

@@ -29,6 +29,9 @@ Options describe(SolveOptions& o) {
          "stop when this share of the emitted energy is still to be distributed; default: from "
          "--error",
          "", 0, 1},
+        {"next-shot", &o.next_shot,
+         "stop when the next patch to shoot holds less than this share of the emitted energy", "",
+         0, 1},
         {"patch-size", &o.patch_size,
          "longest edge of a shooting patch where the file does not divide; default: from --error",
          "m", 1e-6},

@@ -16,6 +16,7 @@ struct SolveOptions {
     std::string solver = "shooting";
     std::string groups = "file";
     std::optional<double> unshot;
+    std::optional<double> next_shot;
     std::optional<double> patch_size;
     std::optional<double> min_area;
     bool adaptive = true;

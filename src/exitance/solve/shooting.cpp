@@ -55,19 +55,25 @@ bool Shooting::step() {
         emitted_ = true;
         return true;
     }
-    const std::vector<float> ambient = ambient_row();
-    const double spread = options_.overshoot ? this->ambient() : 0.0;
-    // The patch whose shot moves most light.
-    std::size_t best = 0;
-    float most = 0;
-    for (std::size_t p = 0; p < patch_unshot_.size(); ++p) {
-        const float moved =
-            std::abs(patch_unshot_[p] + static_cast<float>(spread) * patch_rho_[p]);
-        if (moved > most) most = moved, best = p;
-    }
-    if (most <= 0) return false;
-    shoot_patch(PatchId(best), ambient);
+    const auto [patch, moved] = brightest();
+    if (moved <= 0) return false;
+    // Overshooting (Feda & Purgathofer 1992): a patch sends along what it will reflect of the
+    // ambient light; what arrives later and was already sent makes its unshot light negative, and
+    // is settled.
+    shoot_patch(PatchId(patch), options_.overshoot
+                                    ? ambient_per_column()
+                                    : std::vector<float>(radiosity_.columns.stride, 0.0f));
     return true;
+}
+
+Shooting::Brightest Shooting::brightest() const {
+    const auto spread = options_.overshoot ? static_cast<float>(ambient()) : 0.0f;
+    Brightest best;
+    for (std::size_t p = 0; p < patch_unshot_.size(); ++p) {
+        const float moved = std::abs(patch_unshot_[p] + spread * patch_rho_[p]);
+        if (moved > best.moved) best = {p, moved};
+    }
+    return best;
 }
 
 std::uint64_t Shooting::emit_to(const Receivers& receivers, Received& received,
@@ -244,11 +250,8 @@ double Shooting::ambient() const {
                : 0.0;
 }
 
-// Overshooting (Feda & Purgathofer 1992): a patch sends along what it will reflect of the ambient
-// light; what arrives later and was already sent makes its unshot light negative, and is settled.
-std::vector<float> Shooting::ambient_row() const {
+std::vector<float> Shooting::ambient_per_column() const {
     std::vector<float> row(radiosity_.columns.stride, 0.0f);
-    if (!options_.overshoot) return row;
     for (std::size_t c = 0; c < radiosity_.columns.count; ++c)
         row[c] = static_cast<float>((reflected_flux_[c] - shot_flux_[c]) /
                                     (radiosity_.area() - rho_area_[c]));
@@ -275,6 +278,12 @@ double Shooting::enough() const {
     if (radiosity_.emitted_flux() <= 0) return 0.0;
     return unshot_share * options_.error * mean_irradiance_ * radiosity_.area() *
            (1.0 - radiosity_.mean_reflectance()) / radiosity_.emitted_flux();
+}
+
+double Shooting::next_shot() const {
+    if (!emitted_) return 1.0;
+    const double flux = radiosity_.emitted_flux();
+    return flux > 0 ? static_cast<double>(brightest().moved) / flux : 0.0;
 }
 
 Progress Shooting::progress() const {

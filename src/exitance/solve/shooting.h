@@ -28,6 +28,7 @@ class Shooting final : public Solver {
     bool step() override;
     double unshot() const override;
     double enough() const override;
+    double next_shot() const override;
     Progress progress() const override;
 
     /// Luminance of irradiance far below the error asked for.
@@ -39,15 +40,22 @@ class Shooting final : public Solver {
     /// Ambient estimate of Cohen et al. 1988: irradiance (luminance) that everything still unshot
     /// would add on average; falls to 0 as the solution converges.
     double ambient() const;
+    /// The same per column of the field.
+    std::vector<float> ambient_per_column() const;
 
   private:
     void shoot_emission();
     void shoot_patch(PatchId patch, const std::vector<float>& ambient);
     std::uint64_t emit_to(const Receivers& receivers, Received& received, std::size_t emitters);
     void deliver(const Received& received);
+    struct Brightest {
+        std::size_t patch = 0;
+        float moved = 0;  ///< luminance-weighted flux
+    };
+    /// The patch whose shot moves most light.
+    Brightest brightest() const;
     void weigh_patches();
     void find_unshot();
-    std::vector<float> ambient_row() const;
     float tolerance() const;
     RefineOptions refine_options(bool thorough) const;
 

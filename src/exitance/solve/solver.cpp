@@ -7,11 +7,14 @@ Ended run(Solver& solver, const Stop& stop, const Stopwatch& clock, const Observ
     while (true) {
         if (stop.cancel && stop.cancel->requested()) return Ended::cancelled;
         if (stop.seconds && clock.seconds() >= *stop.seconds) return Ended::out_of_time;
-        if (solver.unshot() <= stop.unshot.value_or(solver.enough())) return Ended::converged;
+        const double target = stop.unshot.value_or(solver.enough());
+        if (solver.unshot() <= target) return Ended::converged;
+        if (stop.next_shot && solver.next_shot() < *stop.next_shot) return Ended::converged;
         if (!solver.step()) return Ended::converged;
         if (observe) {
             Progress progress = solver.progress();
             progress.seconds = clock.seconds();
+            progress.fraction_target = target;
             observe(progress);
         }
     }

@@ -20,6 +20,8 @@ class Solver {
     virtual double unshot() const = 0;
     /// The share at which what is missing no longer matters for the error asked for.
     virtual double enough() const = 0;
+    /// What the next step distributes / emitted light.
+    virtual double next_shot() const = 0;
     virtual Progress progress() const = 0;
 };
 
@@ -27,6 +29,7 @@ class Solver {
 struct Stop {
     std::optional<double> unshot;   ///< share of the emitted light; default: Solver::enough()
     std::optional<double> seconds;  ///< since `clock` was started
+    std::optional<double> next_shot;  ///< least that is worth a step, a share of the emitted light
     const Cancel* cancel = nullptr;
 };
 
