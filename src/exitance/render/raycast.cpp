@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/render/raycast.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "exitance/run/parallel.h"
+#include "exitance/run/random.h"
+
+namespace exitance {
+
+namespace {
+
+/// Sample positions with the density of the filter, so that all weigh the same (Ernst, Stamminger
+/// & Greiner 2006): a Gaussian of σ = 0.45 pixels, cut at 1.5.
+std::array<double, 2> filter_offset(const std::array<double, 2>& u) {
+    constexpr double sigma = 0.45, radius = 1.5;
+    const double cut = 1 - std::exp(-radius * radius / (2 * sigma * sigma));
+    const double r = sigma * std::sqrt(-2 * std::log(1 - u[0] * cut));
+    const double phi = 2 * std::numbers::pi * u[1];
+    return {r * std::cos(phi), r * std::sin(phi)};
+}
+
+/// Fills packets with the samples of a run of pixels, one after the other.
+class PacketCaster {
+  public:
+    PacketCaster(const Surfaces& surfaces, const CameraRays& camera,
+                 const std::function<Vec3f(const ViewHit&)>& shade, Raycast& out, float weight)
+        : surfaces_(surfaces), camera_(camera), shade_(shade), out_(out), weight_(weight) {
+        const Vec3f eye(camera.eye() - surfaces.caster().middle());
+        rays_.origin_x.fill(eye.x), rays_.origin_y.fill(eye.y), rays_.origin_z.fill(eye.z);
+        rays_.near.fill(0.0f), rays_.far.fill(std::numeric_limits<float>::infinity());
+        rays_.direction_x.fill(0.0f), rays_.direction_y.fill(0.0f), rays_.direction_z.fill(1.0f);
+    }
+
+    void add(std::size_t pixel, double x, double y) {
+        const Vec3f direction(camera_.direction(x, y));
+        rays_.direction_x[filled_] = direction.x;
+        rays_.direction_y[filled_] = direction.y;
+        rays_.direction_z[filled_] = direction.z;
+        pixel_[filled_] = pixel;
+        position_[filled_] = {x, y};
+        if (++filled_ == RayPacket::width) cast();
+    }
+
+    void cast() {
+        rays_.active = (1u << filled_) - 1;
+        surfaces_.caster().closest(rays_, hits_);
+        for (std::size_t i = 0; i < filled_; ++i) {
+            if (!(hits_.front >> i & 1u)) continue;
+            const ViewHit hit{Surfaces::place(hits_.primitive[i], hits_.u[i], hits_.v[i]),
+                              position_[i][0], position_[i][1]};
+            out_.image.pixels[pixel_[i]] += shade_(hit) * weight_;
+            out_.coverage[pixel_[i]] += weight_;
+        }
+        filled_ = 0;
+    }
+
+  private:
+    const Surfaces& surfaces_;
+    const CameraRays& camera_;
+    const std::function<Vec3f(const ViewHit&)>& shade_;
+    Raycast& out_;
+    float weight_;
+    RayPacket rays_;
+    RayCaster::PacketHits hits_;
+    std::array<std::size_t, RayPacket::width> pixel_;
+    std::array<std::array<double, 2>, RayPacket::width> position_;
+    std::size_t filled_ = 0;
+};
+
+}  // namespace
+
+Raycast raycast(const Surfaces& surfaces, const CameraRays& camera, std::uint32_t width,
+                std::uint32_t height, std::uint32_t samples, std::uint64_t seed,
+                const std::function<Vec3f(const ViewHit&)>& shade) {
+    Raycast out{Image(width, height), std::vector<float>(std::size_t{width} * height, 0.0f)};
+    constexpr std::uint32_t tile = 16;
+    const std::uint32_t across = (width + tile - 1) / tile, down = (height + tile - 1) / tile;
+    parallel_for(
+        std::size_t{across} * down,
+        [&](std::size_t t) {
+            PacketCaster caster(surfaces, camera, shade, out, 1.0f / static_cast<float>(samples));
+            const auto left = static_cast<std::uint32_t>(t % across) * tile,
+                       top = static_cast<std::uint32_t>(t / across) * tile;
+            for (std::uint32_t y = top; y < std::min(height, top + tile); ++y)
+                for (std::uint32_t x = left; x < std::min(width, left + tile); ++x) {
+                    const std::size_t pixel = std::size_t{y} * width + x;
+                    const std::uint64_t key = hash_bits(seed, pixel);
+                    for (std::uint32_t s = 0; s < samples; ++s) {
+                        const auto [dx, dy] = filter_offset(low_discrepancy(key, s));
+                        caster.add(pixel, x + 0.5 + dx, y + 0.5 + dy);
+                    }
+                }
+            caster.cast();
+        },
+        1);
+    return out;
+}
+
+}  // namespace exitance
