@@ -31,6 +31,7 @@ void describe_program(CLI::App& app) {
 
 void add_commands(CLI::App& app) {
     exitance::cli::add_solve(app);
+    exitance::cli::add_render(app);
     exitance::cli::add_probe(app);
     exitance::cli::add_manual(app);
 }

@@ -20,8 +20,7 @@ class CameraRays {
     /// Direction through image position (x, y) [pixels from the top left corner], scaled so that
     /// its component along the view axis is 1.
     Vec3 direction(double x, double y) const {
-        return forward_ + right_ * ((x - centre_[0]) / focal_) -
-               up_ * ((y - centre_[1]) / focal_);
+        return forward_ + right_ * ((x - centre_[0]) / focal_) - up_ * ((y - centre_[1]) / focal_);
     }
     /// Where a point is seen [pixels]; nothing behind the eye.
     std::optional<std::array<double, 2>> project(const Vec3& point) const;

@@ -110,10 +110,10 @@ void Canvas::text(double x, double y, double size, const std::string& text, cons
                                           scale, shift_x, shift_y, code);
         for (int row = y0; row < y1; ++row)
             for (int column = x0; column < x1; ++column)
-                blend(static_cast<std::int64_t>(left) + column,
-                      static_cast<std::int64_t>(baseline) + row, colour,
-                      bitmap[static_cast<std::size_t>((row - y0) * (x1 - x0) + column - x0)] /
-                          255.0);
+                blend(
+                    static_cast<std::int64_t>(left) + column,
+                    static_cast<std::int64_t>(baseline) + row, colour,
+                    bitmap[static_cast<std::size_t>((row - y0) * (x1 - x0) + column - x0)] / 255.0);
     });
 }
 

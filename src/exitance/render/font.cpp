@@ -5,7 +5,8 @@
 asm(".pushsection .rodata\n"
     ".balign 16\n"
     "exitance_legend_font:\n"
-    ".incbin \"" EXITANCE_FONT "\"\n"
+    ".incbin \"" EXITANCE_FONT
+    "\"\n"
     ".popsection\n");
 
 extern const unsigned char font_bytes[] asm("exitance_legend_font");

@@ -9,8 +9,9 @@ namespace exitance {
 
 Options describe(RenderOptions& o) {
     return {
-        {"size", &o.size, "width and height, as 1280x720; default: 768 high, as wide as the camera "
-                          "says, else 4:3",
+        {"size", &o.size,
+         "width and height, as 1280x720; default: 768 high, as wide as the camera "
+         "says, else 4:3",
          "pixels"},
         {"samples", &o.samples, "rays per pixel; more make edges smoother", "", 1, 4096},
         {"tone",
@@ -21,8 +22,9 @@ Options describe(RenderOptions& o) {
          0,
          0,
          {"linear", "reinhard", "filmic"}},
-        {"ev", &o.ev, "exposure: luminance 1.2 · 2^EV becomes white before the tone curve; "
-                      "default: from the picture's average",
+        {"ev", &o.ev,
+         "exposure: luminance 1.2 · 2^EV becomes white before the tone curve; "
+         "default: from the picture's average",
          "EV", -40, 40},
         {"false-colour",
          &o.false_colour,
@@ -48,8 +50,8 @@ ImageSize parse_size(const std::string& text) {
             size.height <= 16384)
             return size;
     }
-    throw Error(Fault::wrong_use, "--size: '" + text +
-                                      "' is not allowed, expected WIDTHxHEIGHT, each 1 … 16384");
+    throw Error(Fault::wrong_use,
+                "--size: '" + text + "' is not allowed, expected WIDTHxHEIGHT, each 1 … 16384");
 }
 
 }  // namespace exitance

@@ -30,10 +30,10 @@ std::vector<double> group_weights(const Solution& s, const RenderOptions& option
     for (const auto& [name, weight] : options.group_weights) {
         const auto found = std::find(names.begin(), names.end(), name);
         if (found == names.end())
-            throw Error(Fault::wrong_use, fmt::format("--group: the solution has no group '{}'{}; "
-                                                      "its groups are {}",
-                                                      name, suggestion(name, names),
-                                                      fmt::join(names, ", ")));
+            throw Error(Fault::wrong_use,
+                        fmt::format("--group: the solution has no group '{}'{}; "
+                                    "its groups are {}",
+                                    name, suggestion(name, names), fmt::join(names, ", ")));
         weights[static_cast<std::size_t>(found - names.begin())] = weight;
     }
     return weights;
@@ -139,13 +139,13 @@ FalseColours in_false_colours(const Surfaces& surfaces, const CameraRays& camera
                               const RenderOptions& options) {
     const WeightedLight light(surfaces, options);
     const bool irradiance = *options.false_colour == "irradiance";
-    const Raycast values = raycast(
-        surfaces, camera, size.width, size.height, static_cast<std::uint32_t>(options.samples),
-        options.seed, [&](const ViewHit& hit) {
-            const double value = irradiance ? light.total_irradiance(hit.place)
-                                            : light.total_exitance(hit.place);
-            return Vec3f{static_cast<float>(value), 0, 0};
-        });
+    const Raycast values =
+        raycast(surfaces, camera, size.width, size.height,
+                static_cast<std::uint32_t>(options.samples), options.seed, [&](const ViewHit& hit) {
+                    const double value = irradiance ? light.total_irradiance(hit.place)
+                                                    : light.total_exitance(hit.place);
+                    return Vec3f{static_cast<float>(value), 0, 0};
+                });
     const auto [low, high] = options.range.value_or(automatic_range(values));
     if (!(std::isfinite(low) && std::isfinite(high) && low < high))
         throw Error(Fault::wrong_use,
@@ -163,7 +163,7 @@ FalseColours in_false_colours(const Surfaces& surfaces, const CameraRays& camera
 
 void add_legend(Image& image, Quantity quantity, bool irradiance,
                 const std::array<double, 2>& range) {
-    const char* title = !irradiance                             ? "exitance"
+    const char* title = !irradiance                         ? "exitance"
                         : quantity == Quantity::photometric ? "illuminance"
                                                             : "irradiance";
     draw_legend(image, range[0], range[1], title,

@@ -24,8 +24,7 @@ double exposure_of_ev(double ev) {
 double automatic_exposure(const Image& radiance, std::span<const float> coverage) {
     std::vector<double> seen;
     for (std::size_t i = 0; i < radiance.pixels.size(); ++i)
-        if (coverage[i] > 0.5f)
-            seen.push_back(luminance(radiance.pixels[i]) / double(coverage[i]));
+        if (coverage[i] > 0.5f) seen.push_back(luminance(radiance.pixels[i]) / double(coverage[i]));
     if (seen.empty()) return 1;
     std::vector<double> sorted = seen;
     const auto high = sorted.begin() + std::ptrdiff_t(sorted.size() * 99 / 100);
@@ -54,9 +53,8 @@ Vec3f toned(const Vec3f& colour, ToneCurve curve, double white) {
             return each([&](double v) { return factor * v; });
         }
         case ToneCurve::filmic:
-            return each([](double v) {
-                return v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14);
-            });
+            return each(
+                [](double v) { return v * (2.51 * v + 0.03) / (v * (2.43 * v + 0.59) + 0.14); });
     }
     return colour;
 }
