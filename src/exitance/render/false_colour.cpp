@@ -27,10 +27,6 @@ Vec3 rgb_of_oklab(double L, double chroma, double hue) {
             -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
-bool in_gamut(const Vec3& c) {
-    return std::min({c.x, c.y, c.z}) >= 0 && std::max({c.x, c.y, c.z}) <= 1;
-}
-
 /// "1500", "0.25", "2e-05": as short as the step between marks allows.
 std::string mark_text(double value, double step) {
     const double magnitude = std::max(std::abs(value), step);
@@ -51,18 +47,11 @@ double round_step(double span, int count) {
 
 Vec3f false_colour(double t) {
     t = std::clamp(t, 0.0, 1.0);
-    const double L = 0.22 + 0.72 * t;
+    const double L = 0.25 + 0.68 * t;
     const double hue = (300 - 195 * t) * std::numbers::pi / 180;
-    // As colourful as the screen allows at this lightness, up to 0.19.
-    double low = 0, high = 0.19;
-    if (!in_gamut(rgb_of_oklab(L, high, hue)))
-        for (int i = 0; i < 30; ++i) {
-            const double middle = 0.5 * (low + high);
-            (in_gamut(rgb_of_oklab(L, middle, hue)) ? low : high) = middle;
-        }
-    else
-        low = high;
-    return Vec3f(rgb_of_oklab(L, low, hue));
+    // Just inside what a screen can show along this path, without kinks that would look like edges.
+    const double chroma = 0.094 + 0.2 * (t - 0.42) * (t - 0.42);
+    return Vec3f(rgb_of_oklab(L, chroma, hue));
 }
 
 std::vector<double> round_marks(double low, double high, int count) {
@@ -70,7 +59,7 @@ std::vector<double> round_marks(double low, double high, int count) {
     const double step = round_step(high - low, count);
     std::vector<double> out;
     for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k)
-        out.push_back(k * step);
+        out.push_back(k * step + 0.0);  // + 0: no "-0"
     return out;
 }
 

@@ -30,11 +30,11 @@ void draw_wireframe(Image& image, const Surfaces& surfaces, const CameraRays& ca
             return Vec3f{distance < half ? 1.0f : 0.0f, 0, 0};
         });
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-        // Dark on bright and bright on dark.
+        // Bright lines; dark ones only on what is nearly white.
         Vec3f& pixel = image.pixels[i];
-        const float shade = luminance(pixel) > 0.1 ? 0.0f : 0.45f;
+        const float shade = luminance(pixel) > 0.6 ? 0.0f : 0.7f;
         const Vec3f ink{shade, shade, shade};
-        pixel = pixel + (ink - pixel) * (0.75f * lines.image.pixels[i].x);
+        pixel = pixel + (ink - pixel) * (0.5f * lines.image.pixels[i].x);
     }
 }
 
