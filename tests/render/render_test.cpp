@@ -78,9 +78,9 @@ TEST(Render, groups_are_dimmed_by_name) {
             sum += Vec3(p) / 576;
         return sum;
     };
-    const Vec3 both = mean({}), lamp = mean({.range = {}, .group_weights = {{"glow", 0}}}),
-               glow = mean({.range = {}, .group_weights = {{"lamp", 0}}}),
-               half = mean({.range = {}, .group_weights = {{"lamp", 0.5}}});
+    const Vec3 both = mean({}), lamp = mean({.group_weights = {{"glow", 0}}}),
+               glow = mean({.group_weights = {{"lamp", 0}}}),
+               half = mean({.group_weights = {{"lamp", 0.5}}});
     for (std::size_t i = 0; i < 3; ++i) {
         // Light is linear; sums of 9216 floats.
         EXPECT_NEAR(both[i], lamp[i] + glow[i], 1e-5 * both[i]);
@@ -88,7 +88,7 @@ TEST(Render, groups_are_dimmed_by_name) {
         EXPECT_GT(lamp[i], 0);
         EXPECT_GT(glow[i], 0);
     }
-    EXPECT_THROW(mean({.range = {}, .group_weights = {{"lamb", 1}}}), Error);
+    EXPECT_THROW(mean({.group_weights = {{"lamb", 1}}}), Error);
 }
 
 TEST(Render, edges_are_smooth) {
@@ -107,7 +107,7 @@ TEST(Render, edges_are_smooth) {
 TEST(Render, same_seed_same_picture) {
     const Solution s = hand_made::lamp_room(8);
     const Surfaces surfaces(s, Backs::open);
-    const RenderOptions options{.samples = 5, .wireframe = true, .normals = true, .range = {}};
+    const RenderOptions options{.samples = 5, .wireframe = true, .normals = true};
     const Image a = render_display(surfaces, s.cameras[0], {70, 50}, options);
     const Image b = render_display(surfaces, s.cameras[0], {70, 50}, options);
     EXPECT_EQ(a.pixels, b.pixels);
@@ -142,7 +142,7 @@ TEST(Render, wireframe_marks_edges_only) {
                          hand_made::uniform(s, 1));
     const Surfaces surfaces(s, Backs::open);
     const Camera camera = camera_at({0, 0, 1}, {}, 90);
-    const RenderOptions plain{.samples = 64, .range = {}};
+    const RenderOptions plain{.samples = 64};
     RenderOptions lined = plain;
     lined.wireframe = true;
     const Image without = render_display(surfaces, camera, {40, 40}, plain);

@@ -71,7 +71,6 @@ void draw_legend(Image& image, double low, double high, const std::string& title
     const Vec3f ink{0.85f, 0.85f, 0.85f}, paper{0.012f, 0.012f, 0.014f};
 
     const double bar_height = std::min(height - 2 * gap - 4.2 * size, 0.72 * height);
-    if (bar_height < 2 * size) return;  // a picture too small to carry one
     const int count = std::clamp(static_cast<int>(bar_height / (2.4 * size)), 2, 8);
     const std::vector<double> marks = round_marks(low, high, count);
     const double step = marks.size() > 1 ? marks[1] - marks[0] : std::max(std::abs(low), 1.0);
@@ -83,6 +82,8 @@ void draw_legend(Image& image, double low, double high, const std::string& title
     const double panel_width =
         2 * gap + std::max({scale_width, Canvas::text_width(title, size),
                             unit.empty() ? 0.0 : Canvas::text_width(unit, size)});
+    // A picture too small to carry one goes without.
+    if (bar_height < 2 * size || panel_width > 0.6 * width) return;
     const double left = width - panel_width, panel_height = bar_height + 2 * gap + 3.4 * size;
     const double top = 0.5 * (height - panel_height);
 
