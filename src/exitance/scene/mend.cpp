@@ -31,15 +31,13 @@ void note(PerSurface& notes, const Polygon& polygon) {
 void warn(Scene& scene, const PerSurface& notes, const char* one, const char* several) {
     for (const auto& [s, mended] : notes) {
         const Surface& surface = scene.surfaces[s];
-        const std::string& material = scene.materials[surface.material].name;
         Problem problem;
         problem.place = surface.place;
         if (mended.first_line > 0) problem.place = {surface.place.file, mended.first_line, 0};
-        problem.what = fmt::format(
-            "{} of '{}'{} {}",
-            mended.count == 1 ? "a polygon" : fmt::format("{} polygons", mended.count),
-            surface.name, material == surface.name ? "" : fmt::format(" ({})", material),
-            mended.count == 1 ? one : several);
+        problem.what =
+            fmt::format("{} of {} {}",
+                        mended.count == 1 ? "a polygon" : fmt::format("{} polygons", mended.count),
+                        scene.label(s), mended.count == 1 ? one : several);
         scene.warnings.push_back(std::move(problem));
     }
 }
@@ -52,9 +50,10 @@ void check_points(const Scene& scene) {
                     const Surface& surface = scene.surfaces[polygon.surface];
                     throw Error(
                         {surface.place.file, polygon.line, 0},
-                        fmt::format("found the coordinate {} in '{}', expected at most {:g} m "
+                        fmt::format("found the coordinate {} in {}, expected at most {:g} m "
                                     "from the origin",
-                                    scene.points[i][axis], surface.name, limits::coordinate));
+                                    scene.points[i][axis], scene.label(polygon.surface),
+                                    limits::coordinate));
                 }
 }
 

@@ -62,6 +62,12 @@ Box Scene::bounds() const {
     return box;
 }
 
+std::string Scene::label(std::uint32_t surface) const {
+    const std::string& name = surfaces[surface].name;
+    const std::string& material = materials[surfaces[surface].material].name;
+    return "'" + name + "'" + (material == name ? "" : " (" + material + ")");
+}
+
 std::uint32_t Scene::add_point(const Vec3& point, const Vec3& normal) {
     points.push_back(point);
     normals.push_back(normal);

@@ -115,6 +115,8 @@ struct Scene {
         return materials[surfaces[polygon.surface].material];
     }
     Box bounds() const;
+    /// A surface as messages call it: "'chair' (oak)", the material where it has another name.
+    std::string label(std::uint32_t surface) const;
 
     std::uint32_t add_point(const Vec3& point, const Vec3& normal = {});
     std::uint32_t add_material(Material material);

@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "exitance/scene/formats/gltf_document.h"
 #include "exitance/scene/formats/limits.h"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "exitance/scene/formats/source_text.h"
 
@@ -133,7 +134,7 @@ JsonText::JsonText(std::string file, std::string_view text, bool lines)
     if (deep != std::string_view::npos)
         fail(deep, fmt::format("found JSON nested deeper than {} levels", deepest));
     try {
-        root_ = nlohmann::json::parse(text);
+        root_ = std::make_shared<const nlohmann::json>(nlohmann::json::parse(text));
     } catch (const nlohmann::json::parse_error& error) {
         fail(error.byte > 0 ? error.byte - 1 : 0, "not JSON: " + reason(error.what()));
     } catch (const nlohmann::json::exception& error) {  // a number beyond double

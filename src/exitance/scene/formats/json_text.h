@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstddef>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -21,7 +22,7 @@ class JsonText {
     /// deeper than 64.
     JsonText(std::string file, std::string_view text, bool lines);
 
-    const nlohmann::json& root() const { return root_; }
+    const nlohmann::json& root() const { return *root_; }
     /// Place of the value at `path`, or of the nearest value around it that is there; for the root
     /// of a text inside a binary file, only the file. Quick for objects.
     Place place(const std::string& path) const;
@@ -32,7 +33,7 @@ class JsonText {
     std::string file_;
     std::string_view text_;
     bool lines_;
-    nlohmann::json root_;
+    std::shared_ptr<const nlohmann::json> root_;
     std::vector<std::size_t> line_begins_;
     std::unordered_map<std::string, std::size_t> objects_;  ///< offset of every object by its path
 };

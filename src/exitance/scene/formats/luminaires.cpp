@@ -52,7 +52,7 @@ Spectrum lamp_exitance(const TomlTable& table, double area) {
     if (!(value > limits::length)) table.refuse("color", "a colour that is not black");
     Spectrum exitance(3, 1.0);
     if (table.has("exitance")) {
-        if (table.node("exitance")->is_array() && table.has("color"))
+        if (table.is_array("exitance") && table.has("color"))
             throw Error(table.place("color"),
                         "found 'color' beside an exitance per band, expected one of them");
         exitance = *table.spectrum("exitance", 0, limits::exitance);

@@ -37,21 +37,24 @@ Transform rotation(const Vec3& a, double angle) {
 
 class ProjectReader {
   public:
-    ProjectReader(const std::filesystem::path& path, const toml::table& root,
+    ProjectReader(const std::filesystem::path& path, std::string_view text,
                   const ReadGeometry& read_geometry)
         : path_(path),
-          root_(path.string(), root, "a project",
-                {"title", "quantity", "geometry", "polygon", "material", "luminaire", "camera",
-                 "grid", "solve"}),
+          root_(TomlTable::parse(path.string(), text, "a project",
+                                 {"title", "quantity", "geometry", "polygon", "material",
+                                  "luminaire", "camera", "grid", "solve"})),
           read_geometry_(read_geometry) {}
 
     Scene read() {
         scene_.title = root_.text("title").value_or(as_utf8(path_.stem().string()));
+        const auto materials = root_.tables("material", {"match", "name", "reflectance", "exitance",
+                                                         "luminance", "group", "two_sided"});
+        const auto luminaires = root_.tables("luminaire", luminaire_keys());
         std::vector<Part> parts;
-        for (const toml::table* table : root_.tables("geometry")) parts.push_back(geometry(*table));
-        for (const toml::table* table : root_.tables("material")) demand_of_material(*table);
-        for (const toml::table* table : root_.tables("luminaire")) demand_of_luminaire(*table);
-        decide_quantity(parts);
+        for (const TomlTable& table :
+             root_.tables("geometry", {"file", "unit", "up", "translate", "rotate", "scale"}))
+            parts.push_back(geometry(table));
+        decide_quantity(materials, luminaires, parts);
         for (Part& part : parts) {
             if (scene_.polygons.size() + part.scene.polygons.size() > limits::elements)
                 throw Error(part.place, fmt::format("with this file the scene has more than {} "
@@ -59,12 +62,20 @@ class ProjectReader {
                                                     limits::elements));
             merge(scene_, std::move(part.scene), part.placing);
         }
-        for (const toml::table* table : root_.tables("material")) material(*table);
-        for (const toml::table* table : root_.tables("polygon")) polygon(*table);
-        for (const toml::table* table : root_.tables("luminaire")) luminaire(*table);
-        for (const toml::table* table : root_.tables("camera")) camera(*table);
-        for (const toml::table* table : root_.tables("grid")) grid(*table);
-        settings();
+        for (const TomlTable& table : materials) material(table);
+        for (const TomlTable& table :
+             root_.tables("polygon", {"corners", "material", "patches", "name"}))
+            polygon(table);
+        for (const TomlTable& table : luminaires) add_luminaire(scene_, table);
+        for (const TomlTable& table :
+             root_.tables("camera", {"name", "eye", "look_at", "up", "fov", "aspect"}))
+            camera(table);
+        for (const TomlTable& table :
+             root_.tables("grid", {"name", "origin", "u", "v", "columns", "rows", "normal"}))
+            grid(table);
+        // [solve] is kept as text; whoever solves knows the names.
+        for (const auto& [name, value, place] : root_.scalars("solve"))
+            scene_.settings.push_back({name, value, place});
         return std::move(scene_);
     }
 
@@ -75,23 +86,8 @@ class ProjectReader {
         Place place;
     };
 
-    TomlTable open(const toml::table& table, const std::string& name,
-                   const std::vector<std::string>& keys) const {
-        return {root_.file(), table, "[[" + name + "]]", keys};
-    }
-    TomlTable open_material(const toml::table& table) const {
-        return open(
-            table, "material",
-            {"match", "name", "reflectance", "exitance", "luminance", "group", "two_sided"});
-    }
-    TomlTable open_luminaire(const toml::table& table) const {
-        return open(table, "luminaire", luminaire_keys());
-    }
-
     // [[geometry]]: the file first as it is in its own unit and axes, then scaled, turned, moved.
-    Part geometry(const toml::table& from) {
-        const TomlTable table =
-            open(from, "geometry", {"file", "unit", "up", "translate", "rotate", "scale"});
+    Part geometry(const TomlTable& table) {
         table.require("file");
         const std::filesystem::path file = path_.parent_path() / *table.text("file");
         std::error_code ignored;
@@ -120,9 +116,8 @@ class ProjectReader {
     static double unit(const TomlTable& table) {
         static const std::map<std::string, double> metres{
             {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}, {"ft", 0.3048}};
-        const toml::node* node = table.node("unit");
-        if (!node) return 1;
-        if (node->is_number()) return *table.number("unit", shortest, farthest);
+        if (!table.has("unit")) return 1;
+        if (table.is_number("unit")) return *table.number("unit", shortest, farthest);
         const auto word = table.text("unit");
         const auto found = metres.find(*word);
         if (found == metres.end()) table.refuse("unit", "m, cm, mm, in, ft or a number of metres");
@@ -132,22 +127,12 @@ class ProjectReader {
     // What a key in lumens, cd/m² or watts says about the quantity of the scene.
     void demand(const TomlTable& table, const std::string& key, Quantity quantity) {
         if (!table.has(key)) return;
-        if (!quantity_) quantity_ = given_quantity();
         if (!quantity_) quantity_ = quantity;
         if (*quantity_ != quantity)
             throw Error(table.place(key),
                         fmt::format("'{}' is {}, but the quantity of this project is {}", key,
                                     quantity_name(quantity), quantity_name(*quantity_)));
     }
-    void demand_of_material(const toml::table& table) {
-        demand(open_material(table), "luminance", Quantity::photometric);
-    }
-    void demand_of_luminaire(const toml::table& from) {
-        const TomlTable table = open_luminaire(from);
-        demand(table, "lumens", Quantity::photometric);
-        demand(table, "watts", Quantity::radiometric);
-    }
-
     static std::string quantity_name(Quantity quantity) {
         if (quantity == Quantity::radiometric) return "radiometric";
         return quantity == Quantity::photometric ? "photometric" : "unitless";
@@ -162,8 +147,14 @@ class ProjectReader {
     }
 
     // What the project says; else what its own keys are measured in; else what the files say.
-    void decide_quantity(const std::vector<Part>& parts) {
-        if (!quantity_) quantity_ = given_quantity();
+    void decide_quantity(const std::vector<TomlTable>& materials,
+                         const std::vector<TomlTable>& luminaires, const std::vector<Part>& parts) {
+        quantity_ = given_quantity();
+        for (const TomlTable& table : materials) demand(table, "luminance", Quantity::photometric);
+        for (const TomlTable& table : luminaires) {
+            demand(table, "lumens", Quantity::photometric);
+            demand(table, "watts", Quantity::radiometric);
+        }
         for (const Part& part : parts)
             if (!quantity_ && part.scene.quantity != Quantity::unitless)
                 quantity_ = part.scene.quantity;
@@ -190,8 +181,7 @@ class ProjectReader {
         return names;
     }
 
-    void material(const toml::table& from) {
-        const TomlTable table = open_material(from);
+    void material(const TomlTable& table) {
         if (table.has("match") == table.has("name"))
             throw Error(
                 table.place(),
@@ -215,8 +205,8 @@ class ProjectReader {
         if (names.size() > 8) known += ", …";
         throw Error(
             table.place("match"),
-            fmt::format("{} matches no material{}; there {}", in_quotes(pattern),
-                        suggestion(pattern, names), names.empty() ? "are none" : "are: " + known));
+            fmt::format("{} matches no material; there {}{}", in_quotes(pattern),
+                        names.empty() ? "are none" : "are: " + known, suggestion(pattern, names)));
     }
 
     void change(Material& material, const TomlTable& table) const {
@@ -252,8 +242,7 @@ class ProjectReader {
         return found->second;
     }
 
-    void polygon(const toml::table& from) {
-        const TomlTable table = open(from, "polygon", {"corners", "material", "patches", "name"});
+    void polygon(const TomlTable& table) {
         table.require("corners");
         table.require("material");
         const std::string material = *table.text("material");
@@ -283,11 +272,7 @@ class ProjectReader {
         scene_.polygons.push_back(polygon);
     }
 
-    void luminaire(const toml::table& from) { add_luminaire(scene_, open_luminaire(from)); }
-
-    void camera(const toml::table& from) {
-        const TomlTable table =
-            open(from, "camera", {"name", "eye", "look_at", "up", "fov", "aspect"});
+    void camera(const TomlTable& table) {
         table.require("eye");
         table.require("look_at");
         Camera camera;
@@ -309,9 +294,7 @@ class ProjectReader {
         scene_.cameras.push_back(std::move(camera));
     }
 
-    void grid(const toml::table& from) {
-        const TomlTable table =
-            open(from, "grid", {"name", "origin", "u", "v", "columns", "rows", "normal"});
+    void grid(const TomlTable& table) {
         for (const char* key : {"origin", "u", "v", "columns", "rows"}) table.require(key);
         SensorGrid grid;
         grid.name = table.text("name").value_or(fmt::format("grid {}", scene_.grids.size() + 1));
@@ -327,31 +310,6 @@ class ProjectReader {
         scene_.grids.push_back(std::move(grid));
     }
 
-    // [solve]: kept as text; whoever solves knows the names.
-    void settings() {
-        const toml::node* node = root_.node("solve");
-        if (!node) return;
-        if (!node->is_table()) root_.refuse("solve", "a table that begins with [solve]");
-        for (const auto& [key, value] : *node->as_table()) {
-            Setting setting;
-            setting.name = std::string(key.str());
-            setting.place = place_of(root_.file(), value);
-            if (value.is_string())
-                setting.value = value.as_string()->get();
-            else if (value.is_boolean())
-                setting.value = value.as_boolean()->get() ? "true" : "false";
-            else if (value.is_integer())
-                setting.value = std::to_string(value.as_integer()->get());
-            else if (value.is_floating_point())
-                setting.value = fmt::format("{}", value.as_floating_point()->get());
-            else
-                throw Error(setting.place, fmt::format("{}: found {}, expected a word, a number, "
-                                                       "true or false",
-                                                       setting.name, kind_of(value)));
-            scene_.settings.push_back(std::move(setting));
-        }
-    }
-
     std::filesystem::path path_;
     TomlTable root_;
     const ReadGeometry& read_geometry_;
@@ -365,8 +323,7 @@ class ProjectReader {
 
 Scene parse_project(const std::filesystem::path& path, std::string_view text,
                     const ReadGeometry& read_geometry) {
-    const toml::table root = parse_toml(path.string(), text);
-    return ProjectReader(path, root, read_geometry).read();
+    return ProjectReader(path, text, read_geometry).read();
 }
 
 }  // namespace exitance

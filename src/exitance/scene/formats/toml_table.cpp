@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -13,6 +14,29 @@
 namespace exitance {
 
 namespace {
+
+Place place_of(const std::string& file, const toml::node& node) {
+    return {file, node.source().begin.line, node.source().begin.column};
+}
+
+// What a value is called in messages.
+std::string kind_of(const toml::node& node) {
+    switch (node.type()) {
+        case toml::node_type::string:
+            return "the string";
+        case toml::node_type::integer:
+        case toml::node_type::floating_point:
+            return "the number";
+        case toml::node_type::boolean:
+            return "the flag";
+        case toml::node_type::array:
+            return "an array";
+        case toml::node_type::table:
+            return "a table";
+        default:
+            return "the date or time";
+    }
+}
 
 std::string range_text(double least, double most) {
     if (most >= limits::coordinate && least <= -limits::coordinate) return "a number";
@@ -37,42 +61,10 @@ std::optional<double> finite(const toml::node& node) {
 
 }  // namespace
 
-toml::table parse_toml(const std::string& file, std::string_view text) {
-    try {
-        return toml::parse(text, file);
-    } catch (const toml::parse_error& error) {
-        const auto& at = error.source().begin;
-        throw Error({file, std::max<std::size_t>(at.line, 1), std::max<std::size_t>(at.column, 1)},
-                    "not TOML: " + as_utf8(error.description()));
-    }
-}
-
-Place place_of(const std::string& file, const toml::node& node) {
-    return {file, node.source().begin.line, node.source().begin.column};
-}
-
-std::string kind_of(const toml::node& node) {
-    switch (node.type()) {
-        case toml::node_type::string:
-            return "the string";
-        case toml::node_type::integer:
-        case toml::node_type::floating_point:
-            return "the number";
-        case toml::node_type::boolean:
-            return "the flag";
-        case toml::node_type::array:
-            return "an array";
-        case toml::node_type::table:
-            return "a table";
-        default:
-            return "the date or time";
-    }
-}
-
-TomlTable::TomlTable(std::string file, const toml::table& table, std::string name,
+TomlTable::TomlTable(std::string file, std::shared_ptr<const toml::table> table, std::string name,
                      const std::vector<std::string>& keys)
-    : file_(std::move(file)), name_(std::move(name)), table_(&table) {
-    for (const auto& [key, value] : table) {
+    : file_(std::move(file)), name_(std::move(name)), table_(std::move(table)) {
+    for (const auto& [key, value] : *table_) {
         const std::string word(key.str());
         if (std::find(keys.begin(), keys.end(), word) != keys.end()) continue;
         const auto& at = key.source().begin;
@@ -80,6 +72,33 @@ TomlTable::TomlTable(std::string file, const toml::table& table, std::string nam
                     fmt::format("found {} in {}, which has no such key{}", in_quotes(word), name_,
                                 suggestion(word, keys)));
     }
+}
+
+TomlTable TomlTable::parse(const std::string& file, std::string_view text, const std::string& name,
+                           const std::vector<std::string>& keys) {
+    try {
+        return {file, std::make_shared<const toml::table>(toml::parse(text, file)), name, keys};
+    } catch (const toml::parse_error& error) {
+        const auto& at = error.source().begin;
+        throw Error({file, std::max<std::size_t>(at.line, 1), std::max<std::size_t>(at.column, 1)},
+                    "not TOML: " + as_utf8(error.description()));
+    }
+}
+
+const toml::node* TomlTable::node(const std::string& key) const {
+    return table_->get(key);
+}
+
+Place TomlTable::place() const {
+    return place_of(file_, *table_);
+}
+
+bool TomlTable::is_number(const std::string& key) const {
+    return has(key) && node(key)->is_number();
+}
+
+bool TomlTable::is_array(const std::string& key) const {
+    return has(key) && node(key)->is_array();
 }
 
 Place TomlTable::place(const std::string& key) const {
@@ -189,18 +208,46 @@ std::optional<std::vector<Vec3>> TomlTable::points(const std::string& key) const
     return out;
 }
 
-std::vector<const toml::table*> TomlTable::tables(const std::string& key) const {
+std::vector<TomlTable> TomlTable::tables(const std::string& key,
+                                         const std::vector<std::string>& keys) const {
     const toml::node* found = node(key);
-    std::vector<const toml::table*> out;
+    std::vector<TomlTable> out;
     if (!found) return out;
     const toml::array* array = found->as_array();
-    if (!array) refuse(key, fmt::format("tables that begin with [[{}]]", key));
+    const std::string heading = "[[" + key + "]]";
+    if (!array) refuse(key, "tables that begin with " + heading);
     for (const toml::node& element : *array) {
         if (!element.is_table())
             throw Error(place_of(file_, element),
-                        fmt::format("{}: found {}, expected tables that begin with [[{}]]", key,
-                                    shown(element), key));
-        out.push_back(element.as_table());
+                        fmt::format("{}: found {}, expected tables that begin with {}", key,
+                                    shown(element), heading));
+        out.push_back({file_, {table_, element.as_table()}, heading, keys});
+    }
+    return out;
+}
+
+std::vector<TomlTable::Scalar> TomlTable::scalars(const std::string& key) const {
+    const toml::node* found = node(key);
+    std::vector<Scalar> out;
+    if (!found) return out;
+    if (!found->is_table()) refuse(key, "a table that begins with [" + key + "]");
+    for (const auto& [name, value] : *found->as_table()) {
+        Scalar scalar;
+        scalar.name = std::string(name.str());
+        scalar.place = place_of(file_, value);
+        if (value.is_string())
+            scalar.value = value.as_string()->get();
+        else if (value.is_boolean())
+            scalar.value = value.as_boolean()->get() ? "true" : "false";
+        else if (value.is_integer())
+            scalar.value = std::to_string(value.as_integer()->get());
+        else if (value.is_floating_point())
+            scalar.value = fmt::format("{}", value.as_floating_point()->get());
+        else
+            throw Error(scalar.place,
+                        fmt::format("{}: found {}, expected a word, a number, true or false",
+                                    scalar.name, kind_of(value)));
+        out.push_back(std::move(scalar));
     }
     return out;
 }

@@ -2,8 +2,8 @@
 // A table of a TOML file, read key by key; every error names the line and column of what is wrong.
 #pragma once
 
-#include <toml++/toml.h>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,28 +13,39 @@
 #include "exitance/run/error.h"
 #include "exitance/scene/spectrum.h"
 
+namespace toml::inline v3 {
+class node;
+class table;
+}  // namespace toml::inline v3
+
 namespace exitance {
 
-/// Parses `text`; throws Error(bad_input) with line and column for what is not TOML.
-toml::table parse_toml(const std::string& file, std::string_view text);
-
-/// Where a value of `file` stands.
-Place place_of(const std::string& file, const toml::node& node);
-
-/// What a value is called in messages: "a string", "a table".
-std::string kind_of(const toml::node& node);
-
-/// One table. `name` is what messages call it: "[[camera]]". Refers to the parsed file.
+/// One table. `name` is what messages call it: "[[camera]]". Shares the parsed file.
 class TomlTable {
   public:
-    /// Throws Error at the first key that is not among `keys`, with the nearest that is.
-    TomlTable(std::string file, const toml::table& table, std::string name,
-              const std::vector<std::string>& keys);
+    /// The root of a file. Throws Error(bad_input) with line and column for what is not TOML, and
+    /// at the first key that is not among `keys`, with the nearest that is.
+    static TomlTable parse(const std::string& file, std::string_view text, const std::string& name,
+                           const std::vector<std::string>& keys);
 
-    bool has(const std::string& key) const { return table_->contains(key); }
+    /// The tables of an array of tables [[key]], which may have `keys`.
+    std::vector<TomlTable> tables(const std::string& key,
+                                  const std::vector<std::string>& keys) const;
+
+    /// A key of a table that may have any, its value as text.
+    struct Scalar {
+        std::string name, value;
+        Place place;
+    };
+    /// The words, numbers and flags of the table [key].
+    std::vector<Scalar> scalars(const std::string& key) const;
+
+    bool has(const std::string& key) const { return node(key) != nullptr; }
+    bool is_number(const std::string& key) const;
+    bool is_array(const std::string& key) const;
     /// Where the value of `key` stands; where the table begins, if it has none.
     Place place(const std::string& key) const;
-    Place place() const { return place_of(file_, *table_); }
+    Place place() const;
     const std::string& name() const { return name_; }
     const std::string& file() const { return file_; }
 
@@ -58,16 +69,15 @@ class TomlTable {
     /// A list of points.
     std::optional<std::vector<Vec3>> points(const std::string& key) const;
 
-    /// The tables of an array of tables [[key]].
-    std::vector<const toml::table*> tables(const std::string& key) const;
-    const toml::node* node(const std::string& key) const { return table_->get(key); }
-
   private:
+    TomlTable(std::string file, std::shared_ptr<const toml::table> table, std::string name,
+              const std::vector<std::string>& keys);
+    const toml::node* node(const std::string& key) const;
     std::vector<double> numbers_of(const toml::node& node, std::size_t size, double least,
                                    double most, const std::string& key) const;
 
     std::string file_, name_;
-    const toml::table* table_;
+    std::shared_ptr<const toml::table> table_;
 };
 
 }  // namespace exitance

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/scene/groups.h"
+#include "exitance/scene/spectrum.h"
+#include "human_number.h"
+
+namespace exitance::cli {
+
+namespace {
+
+constexpr std::size_t most_lines = 40;  // of materials, groups or problems that are listed
+
+std::string format_name(const std::filesystem::path& file) {
+    const std::string extension = file.extension().string();
+    if (extension == ".toml") return "lighting project";
+    if (extension == ".gltf" || extension == ".glb") return "glTF 2.0";
+    return extension == ".geom" ? "AFIT geometry" : "scene";
+}
+
+std::string quantity_text(Quantity quantity) {
+    if (quantity == Quantity::photometric)
+        return "photometric: exitance in lm/m², irradiance in lx";
+    if (quantity == Quantity::radiometric) return "radiometric: exitance and irradiance in W/m²";
+    return "without a unit of light";
+}
+
+std::string point_text(const Vec3& p) {
+    // −0 is shown as 0.
+    return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x + 0.0, p.y + 0.0, p.z + 0.0);
+}
+
+std::string bands_text(const Scene& scene, const Spectrum& value) {
+    if (std::all_of(value.begin(), value.end(), [&](double v) { return v == value[0]; })) return "";
+    std::string out;
+    for (std::size_t b = 0; b < value.size(); ++b)
+        out += fmt::format("{}{} {:.3g}", b > 0 ? ", " : "", scene.bands[b], value[b]);
+    return " (" + out + ")";
+}
+
+std::string plural(std::size_t count, const std::string& one, const std::string& several) {
+    return fmt::format("{} {}", count, count == 1 ? one : several);
+}
+
+}  // namespace
+
+SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
+                         std::filesystem::path file)
+    : scene_(scene), problems_(std::move(problems)), file_(std::move(file)) {
+    problems_.insert(problems_.begin(), scene.warnings.begin(), scene.warnings.end());
+    for (const Material& material : scene.materials) materials_.push_back({&material, 0, 0});
+    const LightGroups groups = make_groups(scene, Grouping::file);
+    for (const LightGroup& group : groups.groups) groups_.push_back({group.name, 0, 0, 0});
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
+        if (scene.materials[scene.surfaces[s].material].emits())
+            ++groups_[groups.group_of_surface[s]].surfaces;
+    for (const Polygon& polygon : scene.polygons) {
+        const double area = scene.area(polygon);
+        area_ += area;
+        ++(polygon.size() == 3 ? triangles_ : quads_);
+        MaterialFacts& facts = materials_[scene.surfaces[polygon.surface].material];
+        facts.area += area;
+        ++facts.polygons;
+        if (!facts.material->emits()) continue;
+        const double emitting = area * (facts.material->two_sided ? 2 : 1);
+        const double flux = emitting * luminance(facts.material->exitance);
+        LampFacts& lamp = groups_[groups.group_of_surface[polygon.surface]];
+        lamp.area += emitting;
+        lamp.flux += flux;
+        flux_ += flux;
+    }
+    bounds_ = scene.bounds();
+}
+
+std::string SceneReport::text() const {
+    return fmt::format("{}\n{}: {}, {}\n\n", scene_.title, file_.string(), format_name(file_),
+                       quantity_text(scene_.quantity)) +
+           geometry_text() + materials_text() + light_text() + views_text() + problems_text();
+}
+
+std::string SceneReport::geometry_text() const {
+    std::string out =
+        fmt::format("Geometry: {}", plural(scene_.polygons.size(), "polygon", "polygons"));
+    if (scene_.polygons.empty()) return out + "\n";
+    if (triangles_ > 0 && quads_ > 0)
+        out += fmt::format(" ({}, {})", plural(triangles_, "triangle", "triangles"),
+                           plural(quads_, "quad", "quads"));
+    else
+        out += triangles_ > 0 ? ", all triangles" : ", all quads";
+    out += fmt::format(", {}, {:.4g} m²\n", plural(scene_.surfaces.size(), "surface", "surfaces"),
+                       area_);
+    const Vec3 size = bounds_.size();
+    return out + fmt::format("  {:.4g} × {:.4g} × {:.4g} m, from {} to {}\n", size.x, size.y,
+                             size.z, point_text(bounds_.lower), point_text(bounds_.upper));
+}
+
+std::string SceneReport::materials_text() const {
+    std::string out = fmt::format("\nMaterials: {}\n", scene_.materials.size());
+    std::size_t width = 0;
+    for (const MaterialFacts& facts : materials_)
+        width = std::max(width, std::min<std::size_t>(facts.material->name.size(), 30));
+    for (std::size_t i = 0; i < materials_.size(); ++i) {
+        if (i == most_lines) {
+            out += fmt::format("  … and {} more\n", materials_.size() - most_lines);
+            break;
+        }
+        const Material& m = *materials_[i].material;
+        out +=
+            fmt::format("  {:<{}}  reflectance {:.3g}{}, {}", m.name, width,
+                        luminance(m.reflectance), bands_text(scene_, m.reflectance),
+                        materials_[i].polygons == 0 ? std::string("unused")
+                                                    : fmt::format("{:.4g} m²", materials_[i].area));
+        if (m.two_sided) out += ", two-sided";
+        if (m.emits())
+            out +=
+                fmt::format(", emits {}{}",
+                            human_quantity(luminance(m.exitance), exitance_unit(scene_.quantity)),
+                            bands_text(scene_, m.exitance));
+        if (m.reflectance_file) out += fmt::format(", reflectance file {}", *m.reflectance_file);
+        out += "\n";
+    }
+    return out;
+}
+
+std::string SceneReport::light_text() const {
+    if (flux_ <= 0) return "\nLight: none\n";
+    const std::string unit = flux_unit(scene_.quantity);
+    std::string out = fmt::format("\nLight: {} in all, from {}\n", human_quantity(flux_, unit),
+                                  plural(groups_.size(), "light group", "light groups"));
+    for (std::size_t i = 0; i < groups_.size(); ++i) {
+        if (i == most_lines)
+            return out + fmt::format("  … and {} more\n", groups_.size() - most_lines);
+        const LampFacts& g = groups_[i];
+        out += fmt::format("  {}: {} from {:.4g} m² of {}\n", g.name, human_quantity(g.flux, unit),
+                           g.area, plural(g.surfaces, "surface", "surfaces"));
+    }
+    return out;
+}
+
+std::string SceneReport::views_text() const {
+    std::string out = "\n";
+    for (const Camera& c : scene_.cameras)
+        out += fmt::format("Camera {}: from {} to {}, {:.4g}° high\n", c.name, point_text(c.eye),
+                           point_text(c.look_at), c.fov_y);
+    if (scene_.cameras.empty()) out += "No cameras.\n";
+    for (const SensorGrid& g : scene_.grids)
+        out += fmt::format("Grid {}: {} × {} points over {:.4g} × {:.4g} m, facing {}\n", g.name,
+                           g.columns, g.rows, length(g.u), length(g.v), point_text(g.normal));
+    for (const Setting& s : scene_.settings)
+        out += fmt::format("Setting {} = {}\n", s.name, s.value);
+    return out;
+}
+
+std::string SceneReport::problems_text() const {
+    if (problems_.empty()) return "\nNo problems found.\n";
+    std::string out = fmt::format("\nProblems: {}\n", problems_.size());
+    for (std::size_t i = 0; i < problems_.size(); ++i) {
+        if (i == most_lines)
+            return out + fmt::format("  … and {} more\n", problems_.size() - most_lines);
+        const std::string place = problems_[i].place.text();
+        out += fmt::format("  {}{}{}\n", place, place.empty() ? "" : ": ", problems_[i].what);
+    }
+    return out;
+}
+
+}  // namespace exitance::cli

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "human_number.h"
+#include "scene_report.h"
+
+namespace exitance::cli {
+
+SolutionReport::SolutionReport(Solution solution, std::filesystem::path file)
+    : solution_(std::move(solution)), file_(std::move(file)) {
+    for (const Vec3f& position : solution_.positions) bounds_.add(Vec3(position));
+}
+
+std::string SolutionReport::text() const {
+    const Vec3 size = bounds_.size();
+    std::string out = fmt::format(
+        "{}\n{}: a solved scene, irradiance at every vertex\n\n"
+        "Mesh: {} vertices, {} triangles, {} materials\n"
+        "  {:.4g} × {:.4g} × {:.4g} m\n\nLight groups: {}\n",
+        solution_.title, file_.string(), solution_.positions.size(), solution_.triangles.size(),
+        solution_.materials.size(), size.x, size.y, size.z, solution_.groups.size());
+    for (const LightGroup& group : solution_.groups)
+        out += group.weight == 1 ? fmt::format("  {}\n", group.name)
+                                 : fmt::format("  {}, dimmed to {:g}\n", group.name, group.weight);
+
+    const EnergyBalance& energy = solution_.energy;
+    const auto flux = [&](double value) {
+        return human_quantity(value, flux_unit(solution_.quantity));
+    };
+    out += fmt::format(
+        "\nEnergy: {} emitted\n  {} absorbed, {} absorbed by backs, {} escaped, {} still unshot\n",
+        flux(energy.emitted), flux(energy.absorbed), flux(energy.absorbed_behind),
+        flux(energy.escaped), flux(energy.unshot));
+    if (solution_.error)
+        out += fmt::format(
+            "Error: {:.2g} % ± {:.2g} % (RMS of irradiance over its mean, {} held-out points)\n",
+            100 * solution_.error->rms, 100 * solution_.error->confidence, solution_.error->points);
+    else
+        out += "Error: not estimated\n";
+
+    if (!solution_.cameras.empty()) out += "\n";
+    for (const Camera& camera : solution_.cameras) out += fmt::format("Camera {}\n", camera.name);
+    for (const SensorGrid& grid : solution_.grids)
+        out += fmt::format("Grid {}: {} × {} points\n", grid.name, grid.columns, grid.rows);
+    if (!solution_.options.empty()) out += "\nSolved with\n";
+    for (const auto& [name, value] : solution_.options)
+        if (!value.empty()) out += fmt::format("  {} = {}\n", name, value);
+    return out;
+}
+
+}  // namespace exitance::cli

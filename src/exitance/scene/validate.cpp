@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/scene/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "exitance/math/polygon.h"
+#include "exitance/scene/coplanar.h"
+#include "exitance/scene/mend.h"
+
+namespace exitance {
+
+namespace {
+
+constexpr std::size_t most_of_a_kind = 20;  // surfaces or pairs of them that are named one by one
+
+Place place_of(const Scene& scene, const Polygon& polygon) {
+    const Surface& surface = scene.surfaces[polygon.surface];
+    if (polygon.line > 0) return {surface.place.file, polygon.line, 0};
+    return surface.place;
+}
+
+void tell(std::vector<Problem>& problems, const Place& place, std::string what) {
+    Problem& problem = problems.emplace_back();
+    problem.place = place;
+    problem.what = std::move(what);
+}
+
+std::string how_many(std::size_t count, const char* one, const char* several) {
+    return count == 1 ? std::string("a ") + one : fmt::format("{} {}", count, several);
+}
+
+void check_materials(const Scene& scene, std::vector<Problem>& problems) {
+    for (const Material& material : scene.materials) {
+        for (const double rho : material.reflectance)
+            if (!(rho >= 0 && rho < 1)) {
+                tell(problems, material.place,
+                     fmt::format("'{}' has the reflectance {:g}: light needs one below "
+                                 "1 to die out",
+                                 material.name, rho));
+                break;
+            }
+        for (const double e : material.exitance)
+            if (!(e >= 0)) {
+                tell(problems, material.place,
+                     fmt::format("'{}' has the exitance {:g}, which is "
+                                 "not 0 or more",
+                                 material.name, e));
+                break;
+            }
+    }
+}
+
+// Polygons of one surface with one trouble.
+class BySurface {
+  public:
+    void add(const Scene& scene, const Polygon& polygon) {
+        auto& [count, place] = found_[polygon.surface];
+        if (count++ == 0) place = place_of(scene, polygon);
+    }
+    void report(const Scene& scene, const char* one, const char* several,
+                std::vector<Problem>& problems) const {
+        std::size_t told = 0;
+        for (const auto& [surface, entry] : found_) {
+            if (told++ == most_of_a_kind) {
+                tell(problems, {},
+                     fmt::format("… and polygons of {} more surfaces {}",
+                                 found_.size() - most_of_a_kind, several));
+                return;
+            }
+            tell(problems, entry.second,
+                 fmt::format("{} of {} {}", how_many(entry.first, "polygon", "polygons"),
+                             scene.label(surface), entry.first == 1 ? one : several));
+        }
+    }
+
+  private:
+    std::map<std::uint32_t, std::pair<std::size_t, Place>> found_;
+};
+
+// True if all coordinates are numbers.
+bool check_polygons(const Scene& scene, std::vector<Problem>& problems) {
+    const double extent = scene.bounds().diagonal();
+    BySurface wild, empty, bent;
+    bool finite = true;
+    for (const Polygon& polygon : scene.polygons) {
+        const auto corners = scene.corners(polygon);
+        const std::span<const Vec3> c(corners.data(), polygon.size());
+        if (!std::all_of(c.begin(), c.end(), [](const Vec3& p) { return is_finite(p); })) {
+            wild.add(scene, polygon);
+            finite = false;
+            continue;
+        }
+        Box box;
+        for (const Vec3& p : c) box.add(p);
+        if (!(area(c) > 0))
+            empty.add(scene, polygon);
+        else if (planarity_error(c) > planarity_tolerance(box.diagonal(), extent))
+            bent.add(scene, polygon);
+    }
+    wild.report(scene, "has coordinates that are no numbers",
+                "have coordinates that are no numbers", problems);
+    empty.report(scene, "has no area", "have no area", problems);
+    bent.report(scene, "is not planar", "are not planar", problems);
+    return finite;
+}
+
+void report_pairs(const Scene& scene, const std::vector<FacePair>& pairs, const char* what,
+                  std::vector<Problem>& problems) {
+    std::map<std::pair<std::uint32_t, std::uint32_t>, std::pair<std::size_t, Place>> by_surfaces;
+    for (const FacePair& pair : pairs) {
+        const Polygon &a = scene.polygons[pair.first], &b = scene.polygons[pair.second];
+        auto& [count, place] = by_surfaces[std::minmax(a.surface, b.surface)];
+        if (count++ == 0) place = place_of(scene, b);
+    }
+    std::size_t told = 0;
+    for (const auto& [surfaces, entry] : by_surfaces) {
+        if (told++ == most_of_a_kind) {
+            tell(problems, {},
+                 fmt::format("… and so for {} more pairs of surfaces",
+                             by_surfaces.size() - most_of_a_kind));
+            return;
+        }
+        const std::string a = scene.label(surfaces.first), b = scene.label(surfaces.second);
+        const std::string times = how_many(entry.first, "pair of faces", "pairs of faces");
+        tell(problems, entry.second,
+             surfaces.first == surfaces.second
+                 ? fmt::format("{} of {} {}", times, a, what)
+                 : fmt::format("{} of {} and {} {}", times, a, b, what));
+    }
+}
+
+}  // namespace
+
+std::vector<Problem> validate(const Scene& scene) {
+    std::vector<Problem> problems;
+    check_materials(scene, problems);
+    const bool finite = check_polygons(scene, problems);
+    if (scene.polygons.empty()) {
+        tell(problems, {}, "there are no polygons");
+        return problems;
+    }
+    if (std::none_of(scene.polygons.begin(), scene.polygons.end(),
+                     [&](const Polygon& p) { return scene.material(p).emits(); }))
+        tell(problems, {}, "nothing emits light: the scene stays dark");
+    if (!finite) return problems;
+    const FaceOverlaps overlaps = find_overlaps(scene);
+    report_pairs(scene, overlaps.duplicates, "lie in the same place", problems);
+    report_pairs(scene, overlaps.overlaps, "overlap in one plane, facing the same way", problems);
+    if (!overlaps.complete)
+        tell(problems, {}, "there are more faces in one plane than were looked at");
+    return problems;
+}
+
+}  // namespace exitance
