@@ -55,14 +55,18 @@ GivenOptions::GivenOptions(CLI::App& command, const std::string& group, Options 
     }
 }
 
-void GivenOptions::apply(const std::vector<Setting>& settings) const {
+void apply_settings(const std::vector<Setting>& settings, const Options& options) {
     for (const Setting& setting : settings) {
         try {
-            find_option(options_, setting.name).set(setting.value);
+            find_option(options, setting.name).set(setting.value);
         } catch (const Error& error) {
             throw Error(setting.place, error.what());
         }
     }
+}
+
+void GivenOptions::apply(const std::vector<Setting>& settings) const {
+    apply_settings(settings, options_);
     for (const auto& [name, text] : given_) find_option(options_, name).set(text);
 }
 

@@ -15,6 +15,10 @@ class App;
 
 namespace exitance::cli {
 
+/// Stores the settings of a project in `options`. Throws Error(bad_input) with the place of one
+/// that is unknown or out of range.
+void apply_settings(const std::vector<Setting>& settings, const Options& options);
+
 /// What the command line said for declared options; the values are stored by `apply`.
 class GivenOptions {
   public:
@@ -24,8 +28,7 @@ class GivenOptions {
     GivenOptions(const GivenOptions&) = delete;  // the flags refer to it
     GivenOptions& operator=(const GivenOptions&) = delete;
 
-    /// Stores `settings` first, then what the command line gave. Throws Error(bad_input) with the
-    /// place of a setting that is unknown or out of range, Error(wrong_use) for the command line.
+    /// Stores `settings` first, then what the command line gave. Throws as apply_settings().
     void apply(const std::vector<Setting>& settings) const;
 
   private:

@@ -15,7 +15,8 @@ void require_output(const std::filesystem::path& output, const std::filesystem::
     std::error_code absent;
     const bool device = std::filesystem::is_other(output, absent);
     const std::string ending = output.extension().string();
-    if (!device && std::find(endings.begin(), endings.end(), ending) == endings.end())
+    if (!device && !endings.empty() &&
+        std::find(endings.begin(), endings.end(), ending) == endings.end())
         throw Error(Fault::wrong_use, fmt::format("--output: '{}' is not allowed, expected a name "
                                                   "that ends in {}",
                                                   output.string(), fmt::join(endings, " or ")));

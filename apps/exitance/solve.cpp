@@ -53,8 +53,7 @@ class SolveCommand {
         clear_bar(reporting_);
         write_solution(solution, output_);
         if (reporting_.quiet) return;
-        if (interrupt.cancel().requested())
-            std::puts("stopped early; what is solved so far is kept");
+        if (interrupt.cancel().requested()) std::puts(stopped_early);
         std::fputs(summary(solution, output_, watch.seconds()).c_str(), stdout);
     }
 

@@ -11,6 +11,9 @@
 
 namespace exitance::cli {
 
+/// Said after Ctrl-C.
+inline constexpr const char* stopped_early = "stopped early; what is solved so far is kept";
+
 /// One line per warning of a reader, on stderr.
 void print_warnings(const std::vector<Problem>& warnings);
 

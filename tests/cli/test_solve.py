@@ -13,7 +13,8 @@ from program import (BAD_INPUT, COULD_NOT_FINISH, PROGRAM, WRONG_USE, ProgramTes
                      glb_json)
 
 QUICK = ("--error", "0.2")
-LONG = ("--error", "0.0005")
+# Thousands of shots, each a matter of milliseconds.
+LONG = ("--unshot", "0", "--no-adaptive", "--patch-size", "0.02")
 
 
 class Solve(ProgramTest):

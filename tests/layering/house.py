@@ -88,11 +88,23 @@ def includes_to_the_right(root):
 
 
 def heavy_headers(root):
-    """Headers that are slow to compile are included by .cpp files only."""
-    return [f"{path}:{number}: {line.strip()}"
-            for path in files(root) if path.suffix == ".h" and path.parts[0] in ("src", "apps")
+    """A header that is slow to compile is included by .cpp files, or by a header that only .cpp
+    files of its own folder include."""
+    sources = [p for p in files(root) if p.suffix in SOURCES and p.parts[0] in ("src", "apps")]
+    users = {}
+    for path in sources:
+        for _, line in lines(root, path):
+            quoted = re.match(r'\s*#\s*include\s*"([^"]+)"', line)
+            if quoted:
+                users.setdefault(Path(quoted.group(1)).name, []).append(path)
+
+    def is_private(header):
+        return all(user.suffix == ".cpp" and user.parent == header.parent
+                   for user in users.get(header.name, []))
+
+    return [f"{path}:{number}: {line.strip()}" for path in sources if path.suffix == ".h"
             for number, line in lines(root, path)
-            if re.match(r"\s*#\s*include", line) and HEAVY.search(line)]
+            if re.match(r"\s*#\s*include", line) and HEAVY.search(line) and not is_private(path)]
 
 
 def crowded_run(root):

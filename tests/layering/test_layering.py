@@ -77,8 +77,13 @@ class TheRules(unittest.TestCase):
     def test_heavy_header(self):
         self.write("src/exitance/scene/bad.h", SPDX + "#include <nlohmann/json.hpp>\n")
         self.write("src/exitance/scene/good.h", SPDX + "#include <nlohmann/json_fwd.hpp>\n")
-        self.expect(house.heavy_headers,
-                    "src/exitance/scene/bad.h:2: #include <nlohmann/json.hpp>")
+        self.write("src/exitance/scene/user.cpp", SPDX + '#include "exitance/scene/bad.h"\n')
+        self.expect(house.heavy_headers)
+        for user in ("src/exitance/scene/user.h", "src/exitance/mesh/user.cpp"):
+            self.write(user, SPDX + '#include "exitance/scene/bad.h"\n')
+            self.expect(house.heavy_headers,
+                        "src/exitance/scene/bad.h:2: #include <nlohmann/json.hpp>")
+            self.write(user, SPDX)
 
     def test_crowded_run(self):
         for i in range(house.MAX_FILES_OF_RUN + 1):
