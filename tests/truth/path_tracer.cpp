@@ -137,12 +137,12 @@ PathTracer::PathTracer(const Scene& scene, Grouping grouping)
 
 /// Adds weight · M · k / (p + k): with k = cosθ cosθ' / π r² the density per emitter area of
 /// cosine-distributed directions and p that of emitter samples, this is the contribution of a
-/// sample of either kind under the balance heuristic.
-void PathTracer::add_emission(const Face& face, bool front, double kernel,
+/// sample of either kind under the balance heuristic. `facing` is k r².
+void PathTracer::add_emission(const Face& face, bool front, double facing, double r2,
                               std::span<const double> weight, std::span<double> sums) const {
     const Material& material = materials_[face.material];
-    if (face.density == 0 || (!front && !material.two_sided)) return;
-    const double share = kernel / (face.density + kernel);
+    if (face.density == 0 || facing <= 0 || (!front && !material.two_sided)) return;
+    const double share = facing / (face.density * r2 + facing);
     for (std::size_t b = 0; b < bands_; ++b)
         sums[face.group * bands_ + b] += weight[b] * material.exitance[b] * share;
 }
@@ -152,7 +152,7 @@ void PathTracer::sample_lights(Walk& walk, std::span<double> sums) const {
     if (emitters_.empty()) return;
     RayPacket rays{};
     std::array<const Face*, width> faces{};
-    std::array<double, width> kernels{};
+    std::array<double, width> facing{}, squared{};
     std::array<bool, width> fronts{};
     const Vec3 middle = caster_.middle();
     for (std::size_t lane = 0; lane < width; ++lane) {
@@ -175,7 +175,8 @@ void PathTracer::sample_lights(Walk& walk, std::span<double> sums) const {
         fronts[lane] = cos_there > 0;
         if (cos_here <= 0 || cos_there == 0) continue;
         if (!fronts[lane] && !materials_[face.material].two_sided) continue;
-        kernels[lane] = cos_here * std::abs(cos_there) / (std::numbers::pi * r2 * r2);
+        facing[lane] = cos_here * std::abs(cos_there) / (std::numbers::pi * r2);
+        squared[lane] = r2;
         faces[lane] = &face;
         const Vec3 target =
             on_light + face.normal * (fronts[lane] ? caster_.clearance() : -caster_.clearance());
@@ -190,7 +191,8 @@ void PathTracer::sample_lights(Walk& walk, std::span<double> sums) const {
     for (std::size_t lane = 0; lane < width; ++lane)
         if (seen >> lane & 1u) {
             // A sample of the lights stands for 1/p, one of the directions for 1/k.
-            add_emission(*faces[lane], fronts[lane], kernels[lane], walk.weight_of(lane), sums);
+            add_emission(*faces[lane], fronts[lane], facing[lane], squared[lane],
+                         walk.weight_of(lane), sums);
         }
 }
 
@@ -224,7 +226,7 @@ void PathTracer::step(Walk& walk, std::span<double> sums) const {
         const auto weight = walk.weight_of(lane);
         const double cos_here = dot(directions[lane], walk.normal[lane]);
         const double cos_there = std::abs(dot(directions[lane], face.normal));
-        add_emission(face, front, cos_here * cos_there / (std::numbers::pi * distance * distance),
+        add_emission(face, front, cos_here * cos_there / std::numbers::pi, distance * distance,
                      weight, sums);
         if (!front && !material.two_sided) continue;
 

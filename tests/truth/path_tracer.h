@@ -82,8 +82,8 @@ class PathTracer {
 
     void sample_lights(Walk& walk, std::span<double> sums) const;
     void step(Walk& walk, std::span<double> sums) const;
-    void add_emission(const Face& face, bool front, double kernel, std::span<const double> weight,
-                      std::span<double> sums) const;
+    void add_emission(const Face& face, bool front, double facing, double r2,
+                      std::span<const double> weight, std::span<double> sums) const;
 
     std::size_t bands_;
     LightGroups groups_;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scenes whose light is known in closed form. A solver or form-factor method that is added to the
+// project is added to the list in solvers_meet_closed_forms.cpp and meets them all.
+#pragma once
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "exitance/scene/scene.h"
+
+namespace exitance::analytic {
+
+/// Exact irradiance at a point of a surface, per band.
+struct Probe {
+    Vec3 position, normal;
+    Spectrum irradiance;
+};
+
+struct Case {
+    std::string name;
+    Scene scene;
+    std::vector<Probe> probes;
+    /// Allowed departure of every probe, as a share of the largest exact irradiance of the band.
+    double tolerance = 0.01;
+    std::string why;  ///< where the answer comes from and what the tolerance leaves room for
+};
+
+/// Its name, for test messages.
+void PrintTo(const Case& c, std::ostream* out);
+
+std::vector<Case> closed_form_cases();
+
+}  // namespace exitance::analytic

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every solver meets every scene whose light is known exactly.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+
+#include "analytic/scenes.h"
+#include "exitance/pipeline.h"
+#include "exitance/solution/surface_probe.h"
+#include "exitance/solution/surfaces.h"
+
+namespace exitance::analytic {
+namespace {
+
+struct Method {
+    std::string name;
+    SolveOptions options;
+};
+
+/// A new solver is added here and meets them all.
+std::vector<Method> methods() {
+    Method shooting{"shooting", {}};
+    shooting.options.error = 0.01;
+    Method overshooting = shooting;
+    overshooting.name = "overshooting";
+    overshooting.options.overshoot = true;
+    return {shooting, overshooting};
+}
+
+// How GoogleTest names a parameter in its messages.
+void PrintTo(const Method& method, std::ostream* out) {
+    *out << method.name;
+}
+
+class Solver : public testing::TestWithParam<std::tuple<Method, Case>> {};
+
+TEST_P(Solver, MeetsTheClosedForm) {
+    const auto& [method, c] = GetParam();
+    const Solution solution = light(c.scene, method.options);
+    EXPECT_LE(std::abs(solution.energy.imbalance()), 1e-3) << "light must not be lost";
+
+    Spectrum scale(3, 0.0);
+    for (const Probe& probe : c.probes)
+        for (std::size_t b = 0; b < 3; ++b) scale[b] = std::max(scale[b], probe.irradiance[b]);
+    const Surfaces surfaces(solution, Backs::black);
+    for (std::size_t p = 0; p < c.probes.size(); ++p) {
+        const Probe& probe = c.probes[p];
+        std::vector<double> found(solution.columns());
+        ASSERT_TRUE(probe_surface(surfaces, probe.position, probe.normal, found))
+            << "no surface at probe " << p;
+        for (std::size_t b = 0; b < 3; ++b) {
+            double all_groups = 0;
+            for (std::size_t g = 0; g < solution.groups.size(); ++g) all_groups += found[3 * g + b];
+            EXPECT_NEAR(all_groups, probe.irradiance[b], c.tolerance * scale[b])
+                << "probe " << p << ", band " << b << ": " << c.why;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryMethod, Solver,
+                         testing::Combine(testing::ValuesIn(methods()),
+                                          testing::ValuesIn(closed_form_cases())),
+                         [](const auto& test) {
+                             return std::get<0>(test.param).name + "_" +
+                                    std::get<1>(test.param).name;
+                         });
+
+}  // namespace
+}  // namespace exitance::analytic
