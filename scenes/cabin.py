@@ -34,7 +34,7 @@ ATTRIBUTES = [
     ("frame", (0.45, 0.45, 0.46), None),
     ("bins", (0.74, 0.73, 0.70), None),
     ("duct", (0.52, 0.53, 0.55), None),
-    ("light", (0.60, 0.60, 0.60), (6400, 6200, 5700)),
+    ("light", (0.60, 0.60, 0.60), (11000, 10700, 9800)),
 ]
 INDEX = {name: i + 1 for i, (name, _, _) in enumerate(ATTRIBUTES)}
 

@@ -145,20 +145,20 @@ def chair(model, name, x, z, turn):
 def desk(model, name, x, z, turn, lamp_side):
     """A desk of 1.4 x 0.7 m; its user sits on the +z side. Returns where its lamp shines from."""
     d = Placed(model, name, x, z, turn)
-    d.box("desk wood", (-0.7, 0.715, -0.35), (0.7, 0.74, 0.35))
+    d.box("desk wood", (-0.7, 0.695, -0.35), (0.7, 0.72, 0.35))
     for lx in (-0.65, 0.60):
         for lz in (-0.30, 0.25):
-            d.box("grey metal", (lx, 0, lz), (lx + 0.05, 0.715, lz + 0.05), "bt")
+            d.box("grey metal", (lx, 0, lz), (lx + 0.05, 0.695, lz + 0.05), "bt")
     d.box("white metal", (-0.55, 0.0, -0.28), (-0.15, 0.60, 0.20), "b")
     m = Placed(model, name + " monitor", *d.place((0, 0, -0.16))[::2], turn=turn)
-    m.box("black plastic", (-0.12, 0.74, -0.09), (0.12, 0.755, 0.09), "b")
-    m.box("black plastic", (-0.025, 0.755, -0.03), (0.025, 0.86, -0.01), "bt")
+    m.box("black plastic", (-0.12, 0.72, -0.09), (0.12, 0.735, 0.09), "b")
+    m.box("black plastic", (-0.025, 0.735, -0.03), (0.025, 0.86, -0.01), "bt")
     m.box("black plastic", (-0.29, 0.86, -0.035), (0.29, 1.20, -0.005), s="screen glass")
     k = Placed(model, name + " keyboard", *d.place((0, 0, 0.16))[::2], turn=turn)
-    k.box("black plastic", (-0.22, 0.74, -0.07), (0.22, 0.755, 0.07), "b")
+    k.box("black plastic", (-0.22, 0.72, -0.07), (0.22, 0.735, 0.07), "b")
     lamp = Placed(model, name + " lamp", *d.place((lamp_side * 0.54, 0, -0.2))[::2], turn=turn)
-    lamp.box("white metal", (-0.07, 0.74, -0.07), (0.07, 0.755, 0.07), "b")
-    lamp.box("white metal", (-0.01, 0.755, -0.01), (0.01, 1.16, 0.01), "bt")
+    lamp.box("white metal", (-0.07, 0.72, -0.07), (0.07, 0.735, 0.07), "b")
+    lamp.box("white metal", (-0.01, 0.735, -0.01), (0.01, 1.16, 0.01), "bt")
     lamp.box("white metal", (-0.05, 1.16, -0.04), (0.05, 1.185, 0.34))
     return lamp.place((0, 1.158, 0.22))
 
@@ -212,9 +212,9 @@ def office():
     partition = Placed(model, "partition", 4.5, 4.9)
     partition.box("green felt", (-0.02, 0.0, -0.8), (0.02, 1.6, 0.8), "b")
     table = Placed(model, "table", 6.1, 4.8)
-    table.box("desk wood", (-0.7, 0.715, -0.4), (0.7, 0.74, 0.4))
+    table.box("desk wood", (-0.7, 0.695, -0.4), (0.7, 0.72, 0.4))
     table.frustum("grey metal", 0, 0.06, 0.3, 0.06)
-    table.box("grey metal", (-0.04, 0.06, -0.04), (0.04, 0.715, 0.04), "bt")
+    table.box("grey metal", (-0.04, 0.06, -0.04), (0.04, 0.695, 0.04), "bt")
     for i, (dx, dz, turn) in enumerate([(-0.35, 0.65, 0), (0.35, 0.72, 12), (-0.33, -0.68, 175),
                                         (0.36, -0.66, 190)]):
         chair(model, f"visitor chair {i + 1}", 6.1 + dx, 4.8 + dz, turn)
