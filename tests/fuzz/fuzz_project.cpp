@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstddef>
+#include <cstdint>
+
+#include "exitance/scene/formats/project.h"
+#include "fuzz/reads_or_refuses.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace exitance;
+    const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+    return fuzz::reads_or_refuses("t.toml", [&] {
+        return parse_project("t.toml", bytes,
+                             [](const std::filesystem::path&, const Place& at) -> Scene {
+                                 throw Error(at, "no files here");
+                             });
+    });
+}
