@@ -23,6 +23,7 @@ struct Sender {
     std::array<Vec3, 4> corners;
     std::uint32_t count;
     Vec3 normal;
+    bool covered;  ///< partly: what its covered part seems to send never was
 };
 
 struct Lost {
@@ -58,6 +59,7 @@ Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
         Lost lost;
         for (std::size_t packet = begin; packet < end; ++packet) {
             RayPacket rays;
+            std::array<bool, RayPacket::width> covered;
             for (std::size_t k = 0; k < RayPacket::width; ++k) {
                 // Systematic sampling of the sender; sequences for place and direction.
                 const auto i = static_cast<std::uint32_t>(packet * RayPacket::width + k);
@@ -66,6 +68,7 @@ Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
                     std::upper_bound(cumulative.begin(), cumulative.end(), at) -
                     cumulative.begin());
                 const Sender& sender = senders[std::min(s, senders.size() - 1)];
+                covered[k] = sender.covered;
                 const Vec3 origin = point_on(sender, {uniform(hash_bits(seed, i), 1),
                                                       uniform(hash_bits(seed, i), 2)}) +
                                     sender.normal * radiosity.caster.clearance() -
@@ -87,7 +90,8 @@ Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
             for (std::size_t k = 0; k < RayPacket::width; ++k) {
                 if (hits.primitive[k] == 0xffffffffu)
                     lost.escaped += each;
-                else if (!(hits.front >> k & 1u) && !radiosity.two_sided()[hits.primitive[k]])
+                else if (!covered[k] && !(hits.front >> k & 1u) &&
+                         !radiosity.two_sided()[hits.primitive[k]])
                     lost.behind += each;
             }
         }
@@ -124,12 +128,13 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
                 reflected[c] -= radiosity.shot[id][c];
             }
             const auto area = static_cast<double>(element.area);
+            const auto open = static_cast<double>(radiosity.open_share(element));
             out.absorbed += area * static_cast<double>(columns.luminance(absorbed));
-            out.unshot += area * static_cast<double>(columns.luminance(reflected));
+            out.unshot += area * open * static_cast<double>(columns.luminance(reflected));
             const double flux = area * static_cast<double>(columns.luminance(shot));
             if (flux <= 0) return;
             sent += flux;
-            senders.push_back({mesh.corners(element), element.count, face.normal});
+            senders.push_back({mesh.corners(element), element.count, face.normal, open < 1.0});
             cumulative.push_back(sent);
         });
     }

@@ -13,6 +13,10 @@ namespace exitance {
 
 namespace {
 
+struct KeyHash {
+    std::size_t operator()(std::uint64_t key) const { return hash_bits(key); }
+};
+
 class Extraction {
   public:
     Extraction(const Radiosity& radiosity, Solution& out)
@@ -192,7 +196,7 @@ class Extraction {
     std::vector<char> live_;
     std::vector<float> buried_;  ///< vertices × stride, or empty
     std::vector<float> rows_;    ///< irradiance of the vertices made so far
-    tsl::robin_map<std::uint64_t, std::uint32_t> index_;
+    tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash> index_;
     std::vector<PositionId> between_;
     std::vector<std::uint32_t> loop_;
     std::vector<std::uint32_t> part_of_surface_;

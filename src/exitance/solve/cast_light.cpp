@@ -13,6 +13,12 @@ void Received::reset(std::size_t count, std::size_t stride) {
     rows.assign(count * stride, 0.0f);
     light.assign(count, 0.0f);
     unblocked.assign(count, 0.0f);
+    seen.assign(count, 1.0f);
+}
+
+void Received::note_seen() {
+    for (std::size_t i = 0; i < light.size(); ++i)
+        seen[i] = unblocked[i] > 0 ? light[i] / unblocked[i] : 1.0f;
 }
 
 namespace {

@@ -16,10 +16,11 @@ struct Received {
     std::vector<float> rows;     ///< irradiance per column: receivers × stride
     std::vector<float> light;    ///< its luminance
     std::vector<float> unblocked;  ///< the luminance there would be without occlusion
+    std::vector<float> seen;       ///< visible share of the lamps' light, see note_seen
 
     void reset(std::size_t count, std::size_t stride);
-    /// Visible share of the light, 1 where there is none.
-    float visible(std::size_t i) const { return unblocked[i] != 0 ? light[i] / unblocked[i] : 1.0f; }
+    /// seen = light / unblocked as they stand now, 1 where there is no light.
+    void note_seen();
     std::span<const float> row(std::size_t i, std::size_t stride) const {
         return {&rows[i * stride], stride};
     }

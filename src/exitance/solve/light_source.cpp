@@ -11,37 +11,37 @@ namespace {
 // Polygons' own numbers follow those of elements.
 constexpr std::uint32_t first_face_number = 0x80000000u;
 
+/// Builds the tree of a patch from the exitance of its leaves, which `leaf(id, row)` fills in.
+template <class Leaf>
 class Collector {
   public:
-    Collector(const Radiosity& radiosity, LightSource& out, std::span<const float> ambient)
-        : radiosity_(radiosity), out_(out), ambient_(ambient) {}
+    Collector(const Radiosity& radiosity, LightSource& out, const Leaf& leaf)
+        : radiosity_(radiosity), out_(out), leaf_(leaf) {}
 
     // Fills node `at`; exitances go up as area-weighted means.
     void visit(std::size_t at, ElementId id) {
         const std::size_t stride = radiosity_.columns.stride;
         const Element& element = radiosity_.mesh[id];
         if (element.leaf()) {
-            std::vector<float> row(stride);
-            radiosity_.reflected_exitance(id, row);
-            const auto rho = radiosity_.rho(radiosity_.mesh.face_of(element));
-            for (std::size_t c = 0; c < stride; ++c)
-                out_.exitance[at * stride + c] =
-                    row[c] - radiosity_.shot[id][c] + rho[c] * ambient_[c];
+            out_.nodes[at].open_area = radiosity_.open_share(element) * element.area;
+            leaf_(id, std::span(out_.exitance).subspan(at * stride, stride));
         } else {
             const std::size_t first = out_.nodes.size();
             for (std::size_t c = 0; c < 4; ++c)
                 append(ElementId(element.first_child.index() + c));
             for (std::size_t c = 0; c < 4; ++c)
                 visit(first + c, ElementId(element.first_child.index() + c));
-            float total = 0;
+            float open = 0;
             for (std::size_t k = 0; k < 4; ++k) {
-                const float area = out_.nodes[first + k].source.area;
-                total += area;
+                const float share = out_.nodes[first + k].open_area;
+                open += share;
                 for (std::size_t c = 0; c < stride; ++c)
                     out_.exitance[at * stride + c] +=
-                        area * out_.exitance[(first + k) * stride + c];
+                        share * out_.exitance[(first + k) * stride + c];
             }
-            for (std::size_t c = 0; c < stride; ++c) out_.exitance[at * stride + c] /= total;
+            for (std::size_t c = 0; open > 0 && c < stride; ++c)
+                out_.exitance[at * stride + c] /= open;
+            out_.nodes[at].open_area = open;
             out_.nodes[at].first_child = static_cast<std::uint32_t>(first);
         }
         LightSource::Node& node = out_.nodes[at];
@@ -58,15 +58,24 @@ class Collector {
         const Element& element = radiosity_.mesh[id];
         out_.nodes.push_back({Source(radiosity_.mesh.corners(element), element.count,
                                      radiosity_.caster.middle()),
-                              id.value, 0, 0.0f, 0.0f});
+                              0.0f, id.value, 0, 0.0f, 0.0f});
         out_.exitance.resize(out_.nodes.size() * radiosity_.columns.stride, 0.0f);
     }
 
   private:
     const Radiosity& radiosity_;
     LightSource& out_;
-    std::span<const float> ambient_;
+    const Leaf& leaf_;
 };
+
+template <class Leaf>
+LightSource collect(const Radiosity& radiosity, PatchId patch, const Leaf& leaf) {
+    LightSource out;
+    Collector<Leaf> collector(radiosity, out, leaf);
+    collector.append(radiosity.mesh[patch].root);
+    collector.visit(0, radiosity.mesh[patch].root);
+    return out;
+}
 
 }  // namespace
 
@@ -74,19 +83,26 @@ LightSource emission_of(const Radiosity& radiosity, FaceId id) {
     const Face& face = radiosity.mesh[id];
     const auto E = radiosity.emitted(face);
     LightSource out;
-    out.nodes.push_back({Source(radiosity.mesh.corners(face), face.count,
-                                radiosity.caster.middle()),
-                         first_face_number | id.value, 0, radiosity.columns.luminance(E), 0.0f});
+    const Source source(radiosity.mesh.corners(face), face.count, radiosity.caster.middle());
+    out.nodes.push_back({source, source.area, first_face_number | id.value, 0, radiosity.columns.luminance(E), 0.0f});
     out.exitance.assign(E.begin(), E.end());
     return out;
 }
 
 LightSource unshot_of(const Radiosity& radiosity, PatchId patch, std::span<const float> ambient) {
-    LightSource out;
-    Collector collector(radiosity, out, ambient);
-    collector.append(radiosity.mesh[patch].root);
-    collector.visit(0, radiosity.mesh[patch].root);
-    return out;
+    const auto rho = radiosity.rho(radiosity.mesh[radiosity.mesh[patch].face]);
+    return collect(radiosity, patch, [&](ElementId id, std::span<float> row) {
+        radiosity.reflected_exitance(id, row);
+        const auto shot = radiosity.shot[id];
+        for (std::size_t c = 0; c < row.size(); ++c) row[c] += rho[c] * ambient[c] - shot[c];
+    });
+}
+
+LightSource shot_of(const Radiosity& radiosity, PatchId patch) {
+    return collect(radiosity, patch, [&](ElementId id, std::span<float> row) {
+        const auto shot = radiosity.shot[id];
+        std::copy(shot.begin(), shot.end(), row.begin());
+    });
 }
 
 }  // namespace exitance

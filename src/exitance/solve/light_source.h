@@ -12,12 +12,13 @@
 
 namespace exitance {
 
-/// A node's exitance is the area-weighted mean of its children's. A receiver takes light from a
+/// A node's exitance is the mean of its children's, weighted by the area that is not covered. A receiver takes light from a
 /// node as a whole where that changes its irradiance by less than the tolerance, and from the
 /// children otherwise.
 struct LightSource {
     struct Node {
         Source source;
+        float open_area = 0;           ///< not covered by other objects [m²]
         std::uint32_t number = 0;      ///< decorrelates the samples
         std::uint32_t first_child = 0; ///< four nodes in a row; 0 = none
         float luminance = 0;           ///< of the exitance
@@ -31,11 +32,14 @@ struct LightSource {
     }
 };
 
-/// The emission of a whole face. nullopt-free: call it for faces that emit.
+/// The emission of a whole face.
 LightSource emission_of(const Radiosity& radiosity, FaceId face);
 
 /// What a patch still has to shoot, element by element: ρ H − shot, plus ρ times `ambient`
 /// [columns.stride], the share of overshooting.
 LightSource unshot_of(const Radiosity& radiosity, PatchId patch, std::span<const float> ambient);
+
+/// All that a patch has shot so far, without the emission.
+LightSource shot_of(const Radiosity& radiosity, PatchId patch);
 
 }  // namespace exitance

@@ -22,7 +22,7 @@ struct SolveOptions {
     bool adaptive = true;
     bool merge = true;
     bool occlusion = true;
-    bool overshoot = false;
+    bool overshoot = true;
     std::string form_factor = "lambert";
     int threads = 0;
     std::uint64_t seed = 0;

@@ -106,6 +106,7 @@ void Radiosity::admit_new_vertices() {
     exposed.resize(count);
     find_exposed(caster, two_sided_, receivers, first, std::span(exposed).subspan(first));
     irradiance.resize_rows(count);
+    seen.resize(count, 1.0f);
     reflected.resize(count, 0.0f);
     shot.resize_rows(mesh.elements().size());
 }
@@ -121,20 +122,29 @@ void Radiosity::receive(VertexId vertex, std::span<const float> row) {
     reflected[vertex.index()] += bounced;
 }
 
+float Radiosity::open_share(const Element& element) const {
+    float open = 0;
+    for (const VertexId v : element.corners())
+        if (exposed[v.index()]) ++open;
+    return open / static_cast<float>(element.count);
+}
+
 void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
     const Element& element = mesh[leaf];
     std::fill(out.begin(), out.end(), 0.0f);
-    for (const VertexId v : element.corners())
-        if (exposed[v.index()])
-            for (std::size_t c = 0; c < columns.stride; ++c) out[c] += irradiance[v][c];
+    float open = 0;
+    for (const VertexId v : element.corners()) {
+        if (!exposed[v.index()]) continue;
+        for (std::size_t c = 0; c < columns.stride; ++c) out[c] += irradiance[v][c];
+        ++open;
+    }
     const auto reflectance = rho(mesh.face_of(element));
-    for (std::size_t c = 0; c < columns.stride; ++c)
-        out[c] *= reflectance[c] / static_cast<float>(element.count);
+    for (std::size_t c = 0; open > 0 && c < columns.stride; ++c) out[c] *= reflectance[c] / open;
 }
 
 std::size_t Radiosity::bytes() const {
     return mesh.bytes() + receivers.bytes() + exposed.capacity() + irradiance.bytes() +
-           reflected.capacity() * sizeof(float) + shot.bytes();
+           (seen.capacity() + reflected.capacity()) * sizeof(float) + shot.bytes();
 }
 
 }  // namespace exitance

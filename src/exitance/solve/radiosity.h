@@ -39,6 +39,7 @@ class Radiosity {
     Receivers receivers;        ///< one per vertex
     std::vector<char> exposed;  ///< per vertex: open to the room (visibility/exposure.h)
     VertexField irradiance;     ///< H; rows of vertices that are not exposed stay zero
+    std::vector<float> seen;    ///< per vertex: visible share of the lamps' light
     std::vector<float> reflected;  ///< per vertex: luminance of ρ H
     ElementField shot;             ///< per leaf: reflected exitance already shot
 
@@ -54,7 +55,9 @@ class Radiosity {
     /// H of `vertex` += what one shot brought; keeps `reflected` in step.
     void receive(VertexId vertex, std::span<const float> row);
 
-    /// Mean over an element of ρ H: corners that are not exposed count as covered, with no light.
+    /// Share of an element's corners that are exposed, which stands for the share of its area.
+    float open_share(const Element& element) const;
+    /// ρ H of the exposed part of an element.
     void reflected_exitance(ElementId leaf, std::span<float> out) const;
 
     /// Area-weighted mean reflectance (luminance) of the scene's faces.

@@ -13,13 +13,17 @@ namespace exitance {
 
 namespace {
 
-// Corners that see different shares of the shooter: a shadow boundary runs through the element.
-// Its penumbra bends more than corners and midpoints show, so it has the stricter threshold.
+// Corners that see different shares of the lamps: a shadow boundary runs through the element. Its
+// penumbra bends more than corners and midpoints show, so it has the stricter threshold. Elsewhere
+// interpolation mostly errs to one side (light is concave over a surface), and a bias comes back
+// with every bounce, so the threshold stays well below the tolerance.
 constexpr float shadow_difference = 0.02f;
-constexpr float shadow_threshold = 0.5f, smooth_threshold = 1.0f;
+constexpr float shadow_threshold = 0.2f, smooth_threshold = 0.25f;
 // Corners that differ by less than this share of the tolerance cannot hide a departure above it,
 // unless something small stands between them (which a thorough test looks for).
 constexpr float gradient_threshold = 0.5f;
+// A thorough test looks at patches and their children whatever their corners say.
+constexpr int thorough_level = 1;
 
 struct Place {
     FaceId face;
@@ -43,13 +47,8 @@ struct Corners {
 
 class Refinement {
   public:
-    Refinement(Radiosity& radiosity, const RefineOptions& options, const Illuminate& illuminate,
-               bool interpolate_earlier, Received& received)
-        : radiosity_(radiosity),
-          options_(options),
-          illuminate_(illuminate),
-          interpolate_earlier_(interpolate_earlier),
-          received_(received) {}
+    Refinement(Radiosity& radiosity, const RefineOptions& options, const Illuminate& illuminate)
+        : radiosity_(radiosity), options_(options), illuminate_(illuminate) {}
 
     std::uint64_t run() {
         std::vector<ElementId> open;
@@ -68,16 +67,22 @@ class Refinement {
     }
 
   private:
+    float light(VertexId v) const { return radiosity_.columns.luminance(radiosity_.irradiance[v]); }
+
+    // What counts is the sum over elements of error² × area: each may contribute the same.
+    float tolerance(const Element& element) const {
+        return options_.tolerance * std::sqrt(std::max(1.0f, options_.area / element.area));
+    }
+
     Corners corners_of(const Element& element) const {
         Corners out;
         for (const VertexId v : element.corners()) {
             if (!radiosity_.exposed[v.index()]) continue;
-            const float light = received_.light[v.index()];
-            const float seen = received_.visible(v.index());
-            out.low = std::min(out.low, light), out.high = std::max(out.high, light);
+            const float here = light(v), seen = radiosity_.seen[v.index()];
+            out.low = std::min(out.low, here), out.high = std::max(out.high, here);
             out.least_seen = std::min(out.least_seen, seen);
             out.most_seen = std::max(out.most_seen, seen);
-            out.mean += light;
+            out.mean += here;
             ++out.open;
         }
         if (out.open) out.mean /= static_cast<float>(out.open);
@@ -90,10 +95,12 @@ class Refinement {
         if (!radiosity_.reflects(radiosity_.mesh.face_of(element))) return false;
         const Corners c = corners_of(element);
         if (c.open == 0) return false;
-        if (options_.thorough && c.high > options_.tolerance) return true;
+        const float allowed = tolerance(element);
+        if (options_.thorough && element.level <= thorough_level && c.high > allowed) return true;
         const bool shadow = c.most_seen - c.least_seen > shadow_difference;
         const float threshold = gradient_threshold * (shadow ? shadow_threshold : smooth_threshold);
-        return c.high - c.low > threshold * options_.tolerance;
+        const bool contact = c.open < static_cast<int>(element.count) && c.high > allowed;
+        return contact || c.high - c.low > threshold * allowed;
     }
 
     // Lights the edge midpoints and centres of all elements under test, shared ones once.
@@ -130,31 +137,33 @@ class Refinement {
         const FaceId face_id = mesh[element.patch].face;
         const auto middle = Mesh::midpoints(element);
         const Corners all = corners_of(element);
+        const std::size_t stride = radiosity_.columns.stride;
         float departure = 0, least_seen = all.least_seen, most_seen = all.most_seen;
-        bool covered = all.open < element.count;
+        bool covered = all.open < static_cast<int>(element.count);
         for (std::uint32_t i = 0; i < middle.count; ++i) {
             const auto [u, v] = middle.at[i];
-            float light, seen;
+            float here, seen;
             bool open;
             if (const auto vertex = mesh.find_vertex(mesh[face_id], u, v)) {
-                light = received_.light[vertex->index()];
-                seen = received_.visible(vertex->index());
+                here = light(*vertex);
+                seen = radiosity_.seen[vertex->index()];
                 open = radiosity_.exposed[vertex->index()];
             } else {
                 const std::uint32_t at = places_.at({face_id, u, v});
-                light = lit_.light[at], seen = lit_.visible(at), open = open_[at];
+                here = radiosity_.columns.luminance(lit_.row(at, stride));
+                seen = lit_.seen[at], open = open_[at];
             }
             if (!open) {
                 covered = true;
                 continue;
             }
             least_seen = std::min(least_seen, seen), most_seen = std::max(most_seen, seen);
-            departure = std::max(departure, std::abs(light - expected(element, i, all.mean)));
+            departure = std::max(departure, std::abs(here - expected(element, i, all.mean)));
         }
         // An object stands on the element: only small elements may be half covered.
-        if (covered && all.high > options_.tolerance) return options_.thorough;
+        if (covered && all.high > tolerance(element)) return true;
         const bool shadow = most_seen - least_seen > shadow_difference;
-        return departure > options_.tolerance * (shadow ? shadow_threshold : smooth_threshold);
+        return departure > tolerance(element) * (shadow ? shadow_threshold : smooth_threshold);
     }
 
     // Interpolated light at midpoint `i` of an element, from its open corners.
@@ -164,7 +173,7 @@ class Refinement {
         int open = 0;
         for (const VertexId v : {element.vertices[i], element.vertices[(i + 1) % element.count]}) {
             if (!radiosity_.exposed[v.index()]) continue;
-            sum += received_.light[v.index()];
+            sum += light(v);
             ++open;
         }
         return open ? sum / static_cast<float>(open) : mean;
@@ -172,7 +181,6 @@ class Refinement {
 
     std::vector<ElementId> split(const std::vector<ElementId>& elements) {
         Mesh& mesh = radiosity_.mesh;
-        const std::size_t stride = radiosity_.columns.stride;
         const std::size_t first_new = mesh.vertices().size();
         std::vector<ElementId> done;
         for (const ElementId id : elements) {
@@ -181,12 +189,8 @@ class Refinement {
             done.insert(done.end(), also.begin(), also.end());
         }
         radiosity_.admit_new_vertices();
-        const std::size_t count = mesh.vertices().size();
-        received_.rows.resize(count * stride, 0.0f);
-        received_.light.resize(count, 0.0f);
-        received_.unblocked.resize(count, 0.0f);
 
-        std::vector<char> known(count - first_new, 0);
+        std::vector<char> lit(mesh.vertices().size() - first_new, 0);
         std::vector<ElementId> children;
         for (const ElementId id : done) {
             const Element element = mesh[id];
@@ -195,64 +199,39 @@ class Refinement {
             for (std::uint32_t i = 0; i < middle.count; ++i) {
                 const auto [u, v] = middle.at[i];
                 const VertexId vertex = *mesh.find_vertex(mesh[face_id], u, v);
-                if (vertex.index() < first_new || known[vertex.index() - first_new] == 2) continue;
-                if (interpolate_earlier_ && known[vertex.index() - first_new] == 0)
-                    inherit(element, i, vertex);
-                known[vertex.index() - first_new] = 1;
+                if (vertex.index() < first_new || lit[vertex.index() - first_new]) continue;
                 const auto at = places_.find({face_id, u, v});
                 if (at == places_.end()) continue;
-                copy(at->second, vertex);
-                known[vertex.index() - first_new] = 2;
+                take(at->second, vertex);
+                lit[vertex.index() - first_new] = 1;
             }
+            // What the whole had shot, its parts have shot.
+            const std::vector<float> record(radiosity_.shot[id].begin(), radiosity_.shot[id].end());
             for (std::size_t c = 0; c < 4; ++c) {
                 const ElementId child(element.first_child.index() + c);
-                const auto from = radiosity_.shot[id];
-                std::copy(from.begin(), from.end(), radiosity_.shot[child].begin());
+                std::copy(record.begin(), record.end(), radiosity_.shot[child].begin());
                 children.push_back(child);
             }
         }
-        light_the_rest(known, first_new);
+        light_the_rest(lit, first_new);
         std::vector<ElementId> open;
         for (const ElementId child : children)
             if (mesh[child].leaf() && worth_testing(child)) open.push_back(child);
         return open;
     }
 
-    // The sum of all earlier shooters at a new vertex, interpolated from its parents.
-    void inherit(const Element& element, std::uint32_t i, VertexId vertex) {
-        if (!radiosity_.exposed[vertex.index()]) return;
-        std::vector<float> sum(radiosity_.columns.stride, 0.0f);
-        int open = 0;
-        const auto add = [&](VertexId v) {
-            if (!radiosity_.exposed[v.index()]) return;
-            const auto row = radiosity_.irradiance[v];
-            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += row[c];
-            ++open;
-        };
-        if (i < element.count) {
-            add(element.vertices[i]);
-            add(element.vertices[(i + 1) % element.count]);
-        }
-        if (open == 0)
-            for (const VertexId v : element.corners()) add(v);
-        if (open == 0) return;
-        for (float& value : sum) value /= static_cast<float>(open);
-        radiosity_.receive(vertex, sum);
-    }
-
-    void copy(std::uint32_t from, VertexId vertex) {
-        const std::size_t stride = radiosity_.columns.stride, to = vertex.index();
-        std::copy_n(&lit_.rows[from * stride], stride, &received_.rows[to * stride]);
-        received_.light[to] = lit_.light[from];
-        received_.unblocked[to] = lit_.unblocked[from];
+    void take(std::uint32_t from, VertexId vertex) {
+        radiosity_.seen[vertex.index()] = lit_.seen[from];
+        if (radiosity_.exposed[vertex.index()])
+            radiosity_.receive(vertex, lit_.row(from, radiosity_.columns.stride));
     }
 
     // Vertices that the restriction of the quadtree made without a test.
-    void light_the_rest(const std::vector<char>& known, std::size_t first_new) {
+    void light_the_rest(const std::vector<char>& lit, std::size_t first_new) {
         Receivers rest;
         std::vector<VertexId> vertices;
-        for (std::size_t k = 0; k < known.size(); ++k) {
-            if (known[k] == 2) continue;
+        for (std::size_t k = 0; k < lit.size(); ++k) {
+            if (lit[k]) continue;
             const std::size_t v = first_new + k;
             const Receivers& all = radiosity_.receivers;
             rest.add({all.x[v], all.y[v], all.z[v]}, {all.nx[v], all.ny[v], all.nz[v]}, all.key[v]);
@@ -261,14 +240,12 @@ class Refinement {
         lit_.reset(rest.size(), radiosity_.columns.stride);
         rays_ += illuminate_(rest, lit_);
         for (std::size_t k = 0; k < vertices.size(); ++k)
-            copy(static_cast<std::uint32_t>(k), vertices[k]);
+            take(static_cast<std::uint32_t>(k), vertices[k]);
     }
 
     Radiosity& radiosity_;
     const RefineOptions& options_;
     const Illuminate& illuminate_;
-    bool interpolate_earlier_;
-    Received& received_;
 
     tsl::robin_map<Place, std::uint32_t, PlaceHash> places_;
     Receivers points_;
@@ -280,8 +257,8 @@ class Refinement {
 }  // namespace
 
 std::uint64_t refine(Radiosity& radiosity, const RefineOptions& options,
-                     const Illuminate& illuminate, bool interpolate_earlier, Received& received) {
-    return Refinement(radiosity, options, illuminate, interpolate_earlier, received).run();
+                     const Illuminate& illuminate) {
+    return Refinement(radiosity, options, illuminate).run();
 }
 
 }  // namespace exitance

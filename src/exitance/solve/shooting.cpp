@@ -15,6 +15,9 @@ namespace {
 // Of the error asked for, how much the light that is never shot may take: it is a bias, and adds
 // linearly to what meshing and sampling leave.
 constexpr double unshot_share = 0.15;
+// The mesh is refined for all the light when this many times what may stay unshot is left: by then
+// its pattern stands, and what the refinement changes is shot together with the rest.
+constexpr double refine_at = 4;
 
 }  // namespace
 
@@ -55,6 +58,11 @@ bool Shooting::step() {
         emitted_ = true;
         return true;
     }
+    if (options_.adaptive && !refined_ && unshot() <= refine_at * enough()) {
+        refine_mesh();
+        refined_ = true;
+        return true;
+    }
     const auto [patch, moved] = brightest();
     if (moved <= 0) return false;
     // Overshooting (Feda & Purgathofer 1992): a patch sends along what it will reflect of the
@@ -76,79 +84,68 @@ Shooting::Brightest Shooting::brightest() const {
     return best;
 }
 
-std::uint64_t Shooting::emit_to(const Receivers& receivers, Received& received,
-                                std::size_t emitters) {
+// Everything that has been shot so far, at any points: emission first, whose shadows are noted.
+std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& received) {
     std::vector<std::uint32_t> which(receivers.size());
     std::iota(which.begin(), which.end(), 0u);
+    const auto cast = [&](const LightSource& source) {
+        return cast_light(radiosity_.caster, source, receivers, which, tolerance(),
+                          options_.column, radiosity_.columns.stride, received);
+    };
     std::uint64_t rays = 0;
-    for (std::size_t e = 0; e < emitters; ++e)
-        rays += cast_light(radiosity_.caster, emission_of(radiosity_, emitters_[e]), receivers,
-                           which, tolerance(), options_.column, radiosity_.columns.stride, received);
+    for (const FaceId face : emitters_) rays += cast(emission_of(radiosity_, face));
+    received.note_seen();
+    for (std::size_t p = 0; p < patch_shot_.size(); ++p)
+        if (patch_shot_[p] != 0) rays += cast(shot_of(radiosity_, PatchId(p)));
     return rays;
 }
 
-// All lamps together are one shooter: an element must carry the sum of their light, and new
-// vertices get all of it evaluated again, never interpolated.
 void Shooting::shoot_emission() {
     received_.reset(radiosity_.receivers.size(), radiosity_.columns.stride);
-    rays_ += emit_to(radiosity_.receivers, received_, emitters_.size());
+    rays_ += illuminate(radiosity_.receivers, received_);
     shots_ += emitters_.size();
-    // Now the level of light is known; before the bounces it is a 1/(1-ρ)-th of what it will be.
     deliver(received_);
+    radiosity_.seen = received_.seen;
     find_unshot();
-    if (options_.adaptive && tolerance() > 0) {
-        const std::size_t before = radiosity_.receivers.size();
-        rays_ += refine(
-            radiosity_, refine_options(true),
-            [&](const Receivers& points, Received& lit) {
-                return emit_to(points, lit, emitters_.size());
-            },
-            false, received_);
-        for (std::size_t v = before; v < radiosity_.receivers.size(); ++v)
-            if (radiosity_.exposed[v])
-                radiosity_.receive(VertexId(v), received_.row(v, radiosity_.columns.stride));
-    }
+    if (options_.adaptive) refine_mesh();
+}
+
+void Shooting::refine_mesh() {
+    const RefineOptions options{tolerance(), static_cast<float>(options_.patch_area),
+                                static_cast<float>(options_.min_area), !refined_};
+    rays_ += refine(radiosity_, options, [&](const Receivers& points, Received& lit) {
+        return illuminate(points, lit);
+    });
     find_unshot();
 }
 
 void Shooting::shoot_patch(PatchId patch, const std::vector<float>& ambient) {
     const LightSource source = unshot_of(radiosity_, patch, ambient);
     const std::size_t stride = radiosity_.columns.stride;
-    const auto illuminate = [&](const Receivers& points, Received& lit) {
-        if (everyone_.size() < points.size()) {
-            everyone_.resize(points.size());
-            std::iota(everyone_.begin(), everyone_.end(), 0u);
-        }
-        return cast_light(radiosity_.caster, source, points,
-                          std::span(everyone_).first(points.size()), tolerance(), options_.column,
-                          stride, lit);
-    };
     received_.reset(radiosity_.receivers.size(), stride);
-    rays_ += illuminate(radiosity_.receivers, received_);
+    for (std::size_t i = everyone_.size(); i < radiosity_.receivers.size(); ++i)
+        everyone_.push_back(static_cast<std::uint32_t>(i));
+    rays_ += cast_light(radiosity_.caster, source, radiosity_.receivers, everyone_, tolerance(),
+                        options_.column, stride, received_);
     ++shots_;
-
-    // What was shot is no longer unshot; children made below inherit their parent's record.
-    const auto record = [&] {
-        const auto visit = [&](const auto& self, ElementId id, std::size_t at) -> void {
-            const Element& element = radiosity_.mesh[id];
-            if (source.nodes[at].first_child == 0) {
-                for (std::size_t c = 0; c < stride; ++c)
-                    radiosity_.shot[id][c] += source.exitance[at * stride + c];
-                return;
-            }
-            for (std::size_t k = 0; k < 4; ++k)
-                self(self, ElementId(element.first_child.index() + k),
-                     source.nodes[at].first_child + k);
-        };
-        visit(visit, radiosity_.mesh[patch].root, 0);
-        patch_shot_[patch.index()] += source.nodes[0].luminance;
-        for (std::size_t c = 0; c < stride; ++c)
-            shot_flux_[c] += radiosity_.mesh[patch].area * double(source.exitance[c]);
-    };
-    record();
-    if (options_.adaptive)
-        rays_ += refine(radiosity_, refine_options(false), illuminate, true, received_);
     deliver(received_);
+
+    // What was shot is no longer unshot.
+    const auto record = [&](const auto& self, ElementId id, std::size_t at) -> void {
+        const Element& element = radiosity_.mesh[id];
+        if (source.nodes[at].first_child == 0) {
+            for (std::size_t c = 0; c < stride; ++c)
+                radiosity_.shot[id][c] += source.exitance[at * stride + c];
+            return;
+        }
+        for (std::size_t k = 0; k < 4; ++k)
+            self(self, ElementId(element.first_child.index() + k), source.nodes[at].first_child + k);
+    };
+    record(record, radiosity_.mesh[patch].root, 0);
+    const LightSource::Node& root = source.nodes[0];
+    patch_shot_[patch.index()] += root.open_area * root.luminance;
+    for (std::size_t c = 0; c < stride; ++c)
+        shot_flux_[c] += double(root.open_area) * double(source.exitance[c]);
     find_unshot();
 }
 
@@ -181,6 +178,16 @@ void Shooting::weigh_patches() {
         });
         weight_begin_.push_back(static_cast<std::uint32_t>(weight_.size()));
     }
+    std::fill(shot_flux_.begin(), shot_flux_.end(), 0.0);
+    for (std::size_t p = 0; p < patch_shot_.size(); ++p) {
+        patch_shot_[p] = 0;
+        mesh.for_leaves(mesh.patches()[p].root, [&](ElementId id) {
+            const auto shot = radiosity_.shot[id];
+            const float open = radiosity_.open_share(mesh[id]) * mesh[id].area;
+            patch_shot_[p] += open * radiosity_.columns.luminance(shot);
+            for (std::size_t c = 0; c < shot.size(); ++c) shot_flux_[c] += double(open * shot[c]);
+        });
+    }
     received_area_ = std::accumulate(vertex_weight_.begin(), vertex_weight_.end(), 0.0);
 }
 
@@ -211,8 +218,7 @@ void Shooting::find_unshot() {
                 float reflected = 0;
                 for (std::uint32_t k = weight_begin_[p]; k < weight_begin_[p + 1]; ++k)
                     reflected += weight_[k] * radiosity_.reflected[weight_vertex_[k]];
-                const auto area = static_cast<float>(radiosity_.mesh.patches()[p].area);
-                patch_unshot_[p] = reflected - patch_shot_[p] * area;
+                patch_unshot_[p] = reflected - patch_shot_[p];
                 sum += static_cast<double>(std::abs(patch_unshot_[p]));
             }
             return sum;
@@ -260,12 +266,6 @@ std::vector<float> Shooting::ambient_per_column() const {
 
 float Shooting::tolerance() const {
     return static_cast<float>(std::max(options_.error * mean_irradiance_, 1e-30));
-}
-
-RefineOptions Shooting::refine_options(bool thorough) const {
-    // A patch is one of many whose errors add up along a wall.
-    const float share = thorough ? 1.0f : 0.25f;
-    return {share * tolerance(), static_cast<float>(options_.min_area), thorough};
 }
 
 double Shooting::unshot() const {

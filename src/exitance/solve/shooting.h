@@ -15,6 +15,7 @@ namespace exitance {
 struct ShootingOptions {
     double error = 0.02;      ///< RMS error of irradiance relative to its mean to aim at
     double min_area = 0;      ///< smallest element [m²]
+    double patch_area = 1;    ///< of a typical patch [m²]
     bool adaptive = true;
     bool overshoot = true;
     ColumnOptions column;
@@ -24,7 +25,9 @@ class Shooting final : public Solver {
   public:
     Shooting(Radiosity& radiosity, const ShootingOptions& options);
 
-    /// The first steps shoot the emission of the lamps, a face at a time; then patches reflect.
+    /// The first step shoots the emission of the lamps and refines the mesh for it; then patches
+    /// reflect, one a step; when little is left to shoot the mesh is refined once for all the light,
+    /// and what that changed is shot in turn.
     bool step() override;
     double unshot() const override;
     double enough() const override;
@@ -46,7 +49,8 @@ class Shooting final : public Solver {
   private:
     void shoot_emission();
     void shoot_patch(PatchId patch, const std::vector<float>& ambient);
-    std::uint64_t emit_to(const Receivers& receivers, Received& received, std::size_t emitters);
+    std::uint64_t illuminate(const Receivers& receivers, Received& received);
+    void refine_mesh();
     void deliver(const Received& received);
     struct Brightest {
         std::size_t patch = 0;
@@ -57,12 +61,11 @@ class Shooting final : public Solver {
     void weigh_patches();
     void find_unshot();
     float tolerance() const;
-    RefineOptions refine_options(bool thorough) const;
 
     Radiosity& radiosity_;
     ShootingOptions options_;
     std::vector<FaceId> emitters_;  ///< brightest first
-    bool emitted_ = false;
+    bool emitted_ = false, refined_ = false;
 
     // Reflected light of a patch as a weighted sum over vertices, rebuilt when the mesh changes.
     std::vector<std::uint32_t> weight_begin_, weight_vertex_;
@@ -70,7 +73,7 @@ class Shooting final : public Solver {
     std::size_t weighed_elements_ = 0;
     std::vector<float> vertex_weight_;  ///< area that a vertex stands for
     std::vector<float> patch_rho_;      ///< luminance of the reflectance × area
-    std::vector<float> patch_shot_;     ///< luminance of the mean exitance already shot
+    std::vector<float> patch_shot_;     ///< luminance of the reflected flux already shot
     std::vector<float> patch_unshot_;  ///< luminance × area, signed
     double unshot_flux_ = 0;           ///< Σ |patch_unshot_|
     std::vector<double> reflected_flux_;  ///< Σ A ρ H per column
