@@ -53,25 +53,26 @@ ShootingOptions shooting_options(const SolveOptions& options, double extent) {
     return out;
 }
 
-Solution snapshot(const Radiosity& radiosity, const std::vector<float>& ambient) {
-    Solution out = extract_solution(radiosity);
-    for (std::size_t v = 0; v < out.irradiance.rows(); ++v) {
-        const auto row = out.irradiance[VertexId(v)];
-        for (std::size_t c = 0; c < out.columns(); ++c) row[c] += ambient[c];
+void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const Shooting& solver) {
+    Solution so_far = extract_solution(radiosity);
+    if (snapshots.ambient) {
+        const std::vector<float> ambient = solver.ambient_per_column();
+        for (std::size_t v = 0; v < so_far.irradiance.rows(); ++v) {
+            const auto row = so_far.irradiance[VertexId(v)];
+            for (std::size_t c = 0; c < so_far.columns(); ++c) row[c] += ambient[c];
+        }
     }
-    return out;
+    snapshots.take(std::move(so_far));
 }
 
 Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
                         const Radiosity& radiosity, const Shooting& solver) {
-    if (!snapshots.take) return observe;
-    return [&, next = snapshots.every](const Progress& progress) mutable {
+    if (!snapshots.take || !snapshots.every) return observe;
+    return [&, next = *snapshots.every](const Progress& progress) mutable {
         if (observe) observe(progress);
         if (progress.shots < next) return;
-        next = progress.shots + snapshots.every;
-        snapshots.take(snapshot(radiosity, snapshots.ambient
-                                               ? solver.ambient_per_column()
-                                               : std::vector<float>(radiosity.columns.stride)));
+        next = progress.shots + *snapshots.every;
+        take_snapshot(snapshots, radiosity, solver);
     };
 }
 
@@ -90,6 +91,7 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     Shooting solver(radiosity, shooting_options(options, size));
     run(solver, {options.unshot, options.time, options.next_shot, cancel}, clock,
         with_snapshots(observe, snapshots, radiosity, solver));
+    if (snapshots.take) take_snapshot(snapshots, radiosity, solver);
     const EnergyBalance energy = balance(radiosity, options.seed);
     if (options.merge) merge_smooth(radiosity, solver.negligible());
 

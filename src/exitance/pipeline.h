@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "exitance/run/progress.h"
 #include "exitance/scene/scene.h"
@@ -12,9 +13,9 @@
 
 namespace exitance {
 
-/// The solution so far, handed out while the scene is being lit.
+/// The solution so far, handed out while the scene is being lit and once when that ends.
 struct Snapshots {
-    std::uint64_t every = 1;               ///< shots from one to the next
+    std::optional<std::uint64_t> every{};  ///< shots from one to the next; default: only at the end
     bool ambient = false;                  ///< with an estimate of what is still unshot
     std::function<void(Solution)> take{};  ///< called from the calling thread
 };
