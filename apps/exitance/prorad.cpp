@@ -16,6 +16,7 @@
 #include "exitance/solution/file.h"
 #include "exitance/solution/surfaces.h"
 #include "interrupt.h"
+#include "options_cli.h"
 #include "output_path.h"
 #include "progress_bar.h"
 #include "summary.h"
@@ -26,7 +27,7 @@ namespace {
 
 class ProradCommand {
   public:
-    explicit ProradCommand(CLI::App& command) {
+    explicit ProradCommand(CLI::App& command) : given_(command, "Solving", describe(options_)) {
         command.add_option("-g", geometry_, "geometry: points, polygons, attributes")
             ->type_name("geom")
             ->required();
@@ -38,7 +39,8 @@ class ProradCommand {
         CLI::Option* wireframe =
             command.add_flag("-w", picture_.wireframe, "draw the wireframe of the elements");
         command.add_flag("-n", picture_.normals, "draw normals, with -w")->needs(wireframe);
-        command.add_flag("-t", no_occlusion_, "no occlusion test: everything sees everything");
+        command.add_flag("-t", no_occlusion_,
+                         "no occlusion test: everything sees everything, as --no-occlusion");
         command
             .add_option("-s", every_,
                         "show while solving: a numbered picture after every so many shots")
@@ -48,10 +50,9 @@ class ProradCommand {
             ->default_str("16");
         reporting_.add_to(command);
         command.footer(
-            "The picture is outfile.png, or named after the geometry in the current folder; with\n"
-            "-s also …-0001.png and so on to the end. The display file's threshold ends the work: "
-            "1000 ×\n"
-            "energy of the next shooting patch / emitted energy.\n"
+            "The picture is outfile.png, or named after the geometry in the current folder;\n"
+            "with -s also …-0001.png and so on, the last one at the end. The display file's\n"
+            "threshold ends the work: 1000 × energy of the next patch to shoot / emitted energy.\n"
             "\n"
             "Example:\n"
             "  exitance prorad -g scenes/cornell.geom -d scenes/cornell.display -o cornell.glb");
@@ -78,8 +79,9 @@ class ProradCommand {
             if (every_) draw(so_far, display, numbered(picture, ++number));
             latest = std::move(so_far);
         };
-        const Solution solution = light(scene, options(display), make_observer(reporting_),
-                                        &interrupt.cancel(), snapshots);
+        apply(display);
+        const Solution solution =
+            light(scene, options_, make_observer(reporting_), &interrupt.cancel(), snapshots);
         clear_bar(reporting_);
         draw(*latest, display, picture);
         if (output_) write_solution(solution, *output_);
@@ -89,6 +91,8 @@ class ProradCommand {
     }
 
   private:
+    SolveOptions options_;
+    GivenOptions given_;
     std::filesystem::path geometry_, display_;
     std::optional<std::filesystem::path> output_;
     std::optional<std::uint64_t> every_;
@@ -105,14 +109,14 @@ class ProradCommand {
             fmt::format("{}-{:04}.png", picture.stem().string(), number));
     }
 
-    SolveOptions options(const AfitDisplay& display) const {
-        SolveOptions out;
-        out.occlusion = !no_occlusion_;
+    /// The display file first, then the command line.
+    void apply(const AfitDisplay& display) {
         if (display.threshold.value_or(0) > 0) {
-            out.next_shot = std::min(1.0, *display.threshold / 1000);
-            out.unshot = 0;  // the threshold alone decides
+            options_.next_shot = std::min(1.0, *display.threshold / 1000);
+            options_.unshot = 0;  // the threshold alone decides
         }
-        return out;
+        given_.apply({});
+        if (no_occlusion_) options_.occlusion = false;
     }
 
     void draw(const Solution& solution, const AfitDisplay& display,
