@@ -4,11 +4,18 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 
 namespace exitance::cli {
 
+std::string human_number(double value) {
+    const double size = std::abs(value);
+    return size >= 1000 && size < 1e9 ? fmt::format("{:.0f}", value)
+                                      : fmt::format("{:.4g}", value + 0.0);  // −0 becomes 0
+}
+
 std::string human_quantity(double value, const std::string& unit) {
-    return fmt::format("{:.4g}{}{}", value, unit.empty() ? "" : " ", unit);
+    return human_number(value) + (unit.empty() ? "" : " ") + unit;
 }
 
 std::string human_count(double value) {

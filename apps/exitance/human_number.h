@@ -9,7 +9,10 @@ namespace exitance::cli {
 /// Three digits and a prefix: "3.4 M", "57 k", "12".
 std::string human_count(double value);
 
-/// Four significant digits and the unit, if there is one: "12.31 lm".
+/// Four significant digits, whole numbers in full: "0.01234", "12.31", "39789".
+std::string human_number(double value);
+
+/// A number and the unit, if there is one: "12.31 lm".
 std::string human_quantity(double value, const std::string& unit);
 
 }  // namespace exitance::cli

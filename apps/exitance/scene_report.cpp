@@ -31,15 +31,14 @@ std::string quantity_text(Quantity quantity) {
 }
 
 std::string point_text(const Vec3& p) {
-    // −0 is shown as 0.
-    return fmt::format("({:.4g}, {:.4g}, {:.4g})", p.x + 0.0, p.y + 0.0, p.z + 0.0);
+    return fmt::format("({}, {}, {})", human_number(p.x), human_number(p.y), human_number(p.z));
 }
 
 std::string bands_text(const Scene& scene, const Spectrum& value) {
     if (std::all_of(value.begin(), value.end(), [&](double v) { return v == value[0]; })) return "";
     std::string out;
     for (std::size_t b = 0; b < value.size(); ++b)
-        out += fmt::format("{}{} {:.3g}", b > 0 ? ", " : "", scene.bands[b], value[b]);
+        out += fmt::format("{}{} {}", b > 0 ? ", " : "", scene.bands[b], human_number(value[b]));
     return " (" + out + ")";
 }
 
