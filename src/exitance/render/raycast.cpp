@@ -23,6 +23,17 @@ std::array<double, 2> filter_offset(const std::array<double, 2>& u) {
     return {r * std::cos(phi), r * std::sin(phi)};
 }
 
+using Pattern = std::vector<std::array<double, 2>>;
+
+/// Patterns of sample positions that neighbouring pixels draw from; many enough that none shows.
+std::vector<Pattern> filter_patterns(std::uint32_t samples, std::uint64_t seed) {
+    std::vector<Pattern> patterns(64);
+    for (std::size_t k = 0; k < patterns.size(); ++k)
+        for (std::uint32_t s = 0; s < samples; ++s)
+            patterns[k].push_back(filter_offset(low_discrepancy(hash_bits(seed, k), s)));
+    return patterns;
+}
+
 /// Fills packets with the samples of a run of pixels, one after the other.
 class PacketCaster {
   public:
@@ -77,6 +88,7 @@ Raycast raycast(const Surfaces& surfaces, const CameraRays& camera, std::uint32_
                 std::uint32_t height, std::uint32_t samples, std::uint64_t seed,
                 const std::function<Vec3f(const ViewHit&)>& shade) {
     Raycast out{Image(width, height), std::vector<float>(std::size_t{width} * height, 0.0f)};
+    const std::vector<Pattern> patterns = filter_patterns(samples, seed);
     constexpr std::uint32_t tile = 16;
     const std::uint32_t across = (width + tile - 1) / tile, down = (height + tile - 1) / tile;
     parallel_for(
@@ -88,11 +100,8 @@ Raycast raycast(const Surfaces& surfaces, const CameraRays& camera, std::uint32_
             for (std::uint32_t y = top; y < std::min(height, top + tile); ++y)
                 for (std::uint32_t x = left; x < std::min(width, left + tile); ++x) {
                     const std::size_t pixel = std::size_t{y} * width + x;
-                    const std::uint64_t key = hash_bits(seed, pixel);
-                    for (std::uint32_t s = 0; s < samples; ++s) {
-                        const auto [dx, dy] = filter_offset(low_discrepancy(key, s));
+                    for (const auto& [dx, dy] : patterns[hash_bits(pixel) % patterns.size()])
                         caster.add(pixel, x + 0.5 + dx, y + 0.5 + dy);
-                    }
                 }
             caster.cast();
         },

@@ -104,7 +104,8 @@ class Writer {
     std::size_t vertices_ = 0;
     std::vector<View> views_;
     std::uint64_t size_ = 0;
-    PreviewTone tone_;
+    Spectrum luminance_ = luminance_weights(s_.bands.size());
+    std::vector<Vec3f> colours_;  ///< of the preview, in the order of the file
 
     void group_parts() {
         std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> known;
@@ -166,36 +167,43 @@ class Writer {
         add_view("indices", triangles, 12, element_array_buffer);
     }
 
-    /// The three values of attribute `a` out of all columns, zero beyond the last band.
-    Vec3f three_of(std::span<const float> columns, std::size_t a) const {
+    /// `value(column)` of the up to three columns that attribute `a` carries, the rest zero.
+    template <class Value>
+    Vec3f three_of(std::size_t a, const Value& value) const {
         const std::size_t bands = s_.bands.size(), per_group = attributes_per_group(bands);
         const std::size_t group = a / per_group, first = a % per_group * 3;
         Vec3f out;
         for (std::size_t i = 0; i < 3 && first + i < bands; ++i)
-            out[i] = columns[group * bands + first + i];
+            out[i] = value(group * bands + first + i);
         return out;
     }
 
-    /// Weighted sum of the groups as linear RGB; grey where bands are not R, G, B.
-    Vec3f total_rgb(std::span<const float> columns) const {
+    Vec3f three_exitances(const Primitive& p, std::uint32_t vertex, std::size_t a) const {
+        const SolutionPart& part = s_.parts[p.parts[0]];
+        return three_of(a, [&](std::size_t c) { return s_.exitance(vertex, part, c); });
+    }
+
+    /// Weighted sum of the groups' exitances as linear RGB; grey where bands are not R, G, B.
+    Vec3f total_rgb(const Primitive& p, std::uint32_t vertex) const {
+        const SolutionPart& part = s_.parts[p.parts[0]];
         const std::size_t bands = s_.bands.size();
-        Spectrum total(bands, 0.0);
+        Vec3 rgb;
         for (std::size_t g = 0; g < s_.groups.size(); ++g)
-            for (std::size_t b = 0; b < bands; ++b)
-                total[b] += s_.groups[g].weight * double(columns[g * bands + b]);
-        if (bands == 3) return Vec3f(Vec3{total[0], total[1], total[2]});
-        const auto grey = static_cast<float>(luminance(total));
-        return {grey, grey, grey};
+            for (std::size_t b = 0; b < bands; ++b) {
+                const double B =
+                    s_.groups[g].weight * double(s_.exitance(vertex, part, g * bands + b));
+                if (bands == 3)
+                    rgb[b] += B;
+                else
+                    rgb += Vec3{B, B, B} * luminance_[b];
+            }
+        return Vec3f(rgb);
     }
 
     template <class Body>
     void for_each_vertex(const Body& body) const {
-        std::vector<float> B(s_.columns());
         for (const Primitive& primitive : primitives_)
-            for (const std::uint32_t vertex : primitive.vertices) {
-                s_.exitance(vertex, s_.parts[primitive.parts[0]], B);
-                body(vertex, B);
-            }
+            for (const std::uint32_t vertex : primitive.vertices) body(primitive, vertex);
     }
 
     void tone_preview() {
@@ -205,14 +213,14 @@ class Writer {
             const float area = length(cross(b - a, c - a)) / 6;
             for (const std::uint32_t vertex : t) area_of_vertex[vertex] += area;
         }
-        std::vector<Vec3f> colours;
         std::vector<float> areas;
-        colours.reserve(vertices_), areas.reserve(vertices_);
-        for_each_vertex([&](std::uint32_t vertex, std::span<const float> B) {
-            colours.push_back(total_rgb(B));
+        colours_.reserve(vertices_), areas.reserve(vertices_);
+        for_each_vertex([&](const Primitive& primitive, std::uint32_t vertex) {
+            colours_.push_back(total_rgb(primitive, vertex));
             areas.push_back(area_of_vertex[vertex]);
         });
-        tone_ = preview_tone(colours, areas);
+        const PreviewTone tone = preview_tone(colours_, areas);
+        for (Vec3f& colour : colours_) colour = tone(colour);
     }
 
     json accessor(const std::string& view, std::uint64_t first, std::uint64_t count, int type,
@@ -356,19 +364,20 @@ class Writer {
             for (const std::uint32_t v : p.vertices) sink.put(s_.positions[v]);
         for (const Primitive& p : primitives_)
             for (const std::uint32_t v : p.vertices) sink.put(unit(s_.normals[v]));
-        for_each_vertex([&](std::uint32_t, std::span<const float> B) {
-            const Vec3f shown = tone_(total_rgb(B));
+        for (const Vec3f& colour : colours_) {
             for (std::size_t i = 0; i < 3; ++i)
-                sink.put(static_cast<std::uint16_t>(std::lround(shown[i] * 65535.0f)));
+                sink.put(static_cast<std::uint16_t>(std::lround(colour[i] * 65535.0f)));
             sink.put(std::uint16_t{65535});
-        });
+        }
         for (std::size_t a = 0; a < attributes_; ++a)
-            for_each_vertex(
-                [&](std::uint32_t, std::span<const float> B) { sink.put(three_of(B, a)); });
+            for_each_vertex([&](const Primitive& p, std::uint32_t vertex) {
+                sink.put(three_exitances(p, vertex, a));
+            });
         for (std::size_t a = 0; a < attributes_; ++a)
-            for (const Primitive& p : primitives_)
-                for (const std::uint32_t v : p.vertices)
-                    if (p.irradiance) sink.put(three_of(s_.irradiance[VertexId(v)], a));
+            for_each_vertex([&](const Primitive& p, std::uint32_t vertex) {
+                const auto H = s_.irradiance[VertexId(vertex)];
+                if (p.irradiance) sink.put(three_of(a, [&](std::size_t c) { return H[c]; }));
+            });
         write_indices(sink);
     }
 

@@ -80,7 +80,9 @@ struct Solution {
 
     std::size_t columns() const { return groups.size() * bands.size(); }
 
-    /// Exitance B = E + ρ H of vertex `vertex` seen as part of `part`, into `out` [columns()].
+    /// Exitance B = E + ρ H in one column of vertex `vertex` seen as part of `part`.
+    float exitance(std::size_t vertex, const SolutionPart& part, std::size_t column) const;
+    /// The same for all columns, into `out` [columns()].
     void exitance(std::size_t vertex, const SolutionPart& part, std::span<float> out) const;
 };
 
