@@ -108,14 +108,6 @@ class WeightedLight {
     Spectrum luminance_;
 };
 
-Raycast cast_radiance(const Surfaces& surfaces, const CameraRays& camera, ImageSize size,
-                      const RenderOptions& options) {
-    const WeightedLight light(surfaces, options);
-    return raycast(surfaces, camera, size.width, size.height,
-                   static_cast<std::uint32_t>(options.samples), options.seed,
-                   [&](const ViewHit& hit) { return light.radiance(hit.place); });
-}
-
 /// Up to the value that 99 % of what is seen stays below, rounded up to two digits.
 std::array<double, 2> automatic_range(const Raycast& values) {
     std::vector<float> seen;
@@ -128,6 +120,27 @@ std::array<double, 2> automatic_range(const Raycast& values) {
     if (!(*high > 0)) return {0, 1};
     const double unit = std::pow(10, std::floor(std::log10(double(*high))) - 1);
     return {0, std::ceil(double(*high) / unit * (1 - 1e-6)) * unit};
+}
+
+/// Each ray is tone mapped before the pixel's mean is taken: a lamp's edge then falls as smoothly
+/// on the screen as any other.
+Image tone_mapped(const Surfaces& surfaces, const CameraRays& camera, ImageSize size,
+                  const RenderOptions& options) {
+    const WeightedLight light(surfaces, options);
+    const auto samples = static_cast<std::uint32_t>(options.samples);
+    const auto radiance = [&](const ViewHit& hit) { return light.radiance(hit.place); };
+    constexpr std::uint32_t metering_samples = 2;
+    const Raycast metered = raycast(surfaces, camera, size.width, size.height,
+                                    std::min(samples, metering_samples), options.seed, radiance);
+    const double exposure = options.ev ? exposure_of_ev(*options.ev)
+                                       : automatic_exposure(metered.image, metered.coverage);
+    const double white = white_of(metered.image, exposure);
+    const ToneCurve curve = tone_curve(options.tone);
+    return raycast(surfaces, camera, size.width, size.height, samples, options.seed,
+                   [&](const ViewHit& hit) {
+                       return toned(radiance(hit) * static_cast<float>(exposure), curve, white);
+                   })
+        .image;
 }
 
 struct FalseColours {
@@ -175,7 +188,11 @@ void add_legend(Image& image, Quantity quantity, bool irradiance,
 Image render_radiance(const Surfaces& surfaces, const Camera& camera, ImageSize size,
                       const RenderOptions& options) {
     const CameraRays rays(camera, size.width, size.height);
-    return cast_radiance(surfaces, rays, size, options).image;
+    const WeightedLight light(surfaces, options);
+    return raycast(surfaces, rays, size.width, size.height,
+                   static_cast<std::uint32_t>(options.samples), options.seed,
+                   [&](const ViewHit& hit) { return light.radiance(hit.place); })
+        .image;
 }
 
 Image render_display(const Surfaces& surfaces, const Camera& camera, ImageSize size,
@@ -188,10 +205,7 @@ Image render_display(const Surfaces& surfaces, const Camera& camera, ImageSize s
         image = std::move(colours.image);
         range = colours.range;
     } else {
-        const Raycast seen = cast_radiance(surfaces, rays, size, options);
-        const double exposure = options.ev ? exposure_of_ev(*options.ev)
-                                           : automatic_exposure(seen.image, seen.coverage);
-        image = tone_mapped(seen.image, exposure, tone_curve(options.tone));
+        image = tone_mapped(surfaces, rays, size, options);
     }
     if (options.wireframe)
         draw_wireframe(image, surfaces, rays, static_cast<std::uint32_t>(options.samples),

@@ -59,17 +59,11 @@ Vec3f toned(const Vec3f& colour, ToneCurve curve, double white) {
     return colour;
 }
 
-Image tone_mapped(const Image& radiance, double exposure, ToneCurve curve) {
-    Image out = radiance;
+double white_of(const Image& radiance, double exposure) {
     double brightest = 0;
-    for (Vec3f& pixel : out.pixels) {
-        pixel *= static_cast<float>(exposure);
-        brightest = std::max(brightest, luminance(pixel));
-    }
-    // Lamps may burn out; more than four times white would only grey everything else.
-    const double white = std::clamp(brightest, 1.0, 4.0);
-    for (Vec3f& pixel : out.pixels) pixel = toned(pixel, curve, white);
-    return out;
+    for (const Vec3f& pixel : radiance.pixels)
+        brightest = std::max(brightest, exposure * luminance(pixel));
+    return std::clamp(brightest, 1.0, 4.0);
 }
 
 }  // namespace exitance

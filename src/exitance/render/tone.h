@@ -34,10 +34,11 @@ double exposure_of_ev(double ev);
 /// as 1/1000 of the 99th percentile. 1 for a black picture.
 double automatic_exposure(const Image& radiance, std::span<const float> coverage);
 
-/// Linear display values 0 … 1 of `radiance` times `exposure`.
-Image tone_mapped(const Image& radiance, double exposure, ToneCurve curve);
+/// The luminance that the reinhard curve makes white: the brightest of the exposed picture, but at
+/// most 4. Lamps may burn out; more would only grey everything else.
+double white_of(const Image& radiance, double exposure);
 
-/// The curve on one exposed colour; `white` is the luminance that reinhard makes white.
+/// Linear display value 0 … 1 of one exposed colour; `white` is what reinhard makes white.
 Vec3f toned(const Vec3f& colour, ToneCurve curve, double white);
 
 }  // namespace exitance
