@@ -191,8 +191,8 @@ VertexId Mesh::make_vertex(const Element& element, const Face& face, std::int32_
         vertex_at_.insert({{position.value, face.smooth}, VertexId(vertices_.size())});
     const VertexId id = slot->second;
     if (fresh)
-        vertices_.push_back(
-            {position, face.smooth, Vec3f(normal(face, u, v)), sample_point(element, u, v)});
+        vertices_.push_back({position, face.smooth, (*this)[element.patch].face,
+                             Vec3f(normal(face, u, v)), sample_point(element, u, v)});
     return id;
 }
 

@@ -63,6 +63,7 @@ struct Element {
 struct Vertex {
     PositionId position;
     std::uint32_t smooth = 0;
+    FaceId face;   ///< one of those it is a corner of
     Vec3f normal;  ///< unit
     Vec3
         sample;  ///< where irradiance is evaluated: `position`, or a hair inside at a face's border

@@ -46,7 +46,8 @@ Vec3 point_on(const Sender& s, UnitSquare u) {
     const bool in_first = u[0] < share;
     u[0] = in_first ? u[0] / share : (u[0] - share) / (1.0 - share);
     const auto w = uniform_triangle({std::min(u[0], 1.0 - 1e-12), u[1]});
-    const Vec3 &b = in_first ? s.corners[1] : s.corners[2], &c = in_first ? s.corners[2] : s.corners[3];
+    const Vec3 &b = in_first ? s.corners[1] : s.corners[2],
+               &c = in_first ? s.corners[2] : s.corners[3];
     return s.corners[0] * w[0] + b * w[1] + c * w[2];
 }
 
@@ -69,12 +70,12 @@ Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
                     cumulative.begin());
                 const Sender& sender = senders[std::min(s, senders.size() - 1)];
                 covered[k] = sender.covered;
-                const Vec3 origin = point_on(sender, {uniform(hash_bits(seed, i), 1),
-                                                      uniform(hash_bits(seed, i), 2)}) +
-                                    sender.normal * radiosity.caster.clearance() -
-                                    radiosity.caster.middle();
-                const Vec3 d = Frame(sender.normal)
-                                   .to_world(cosine_hemisphere(low_discrepancy(seed + 1, i)));
+                const Vec3 origin =
+                    point_on(sender,
+                             {uniform(hash_bits(seed, i), 1), uniform(hash_bits(seed, i), 2)}) +
+                    sender.normal * radiosity.caster.clearance() - radiosity.caster.middle();
+                const Vec3 d =
+                    Frame(sender.normal).to_world(cosine_hemisphere(low_discrepancy(seed + 1, i)));
                 rays.origin_x[k] = static_cast<float>(origin.x);
                 rays.origin_y[k] = static_cast<float>(origin.y);
                 rays.origin_z[k] = static_cast<float>(origin.z);
@@ -118,7 +119,7 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
             radiosity.reflected_exitance(id, reflected);
             std::fill(absorbed.begin(), absorbed.end(), 0.0f);
             for (const VertexId v : element.corners()) {
-                if (!radiosity.exposed[v.index()]) continue;
+                if (!radiosity.sends[v.index()]) continue;
                 for (std::size_t c = 0; c < columns.stride; ++c)
                     absorbed[c] += (1.0f - rho[c]) * radiosity.irradiance[v][c] /
                                    static_cast<float>(element.count);

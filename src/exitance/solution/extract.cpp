@@ -56,8 +56,7 @@ class Extraction {
         for (const Patch& patch : mesh_.patches())
             mesh_.for_leaves(patch.root, [&](ElementId id) {
                 leaves_.push_back(id);
-                for (const VertexId v : mesh_[id].corners())
-                    live_[mesh_[v].position.index()] = 1;
+                for (const VertexId v : mesh_[id].corners()) live_[mesh_[v].position.index()] = 1;
             });
     }
 

@@ -13,8 +13,8 @@ namespace exitance {
 
 /// What receivers got, one entry or row each.
 struct Received {
-    std::vector<float> rows;     ///< irradiance per column: receivers × stride
-    std::vector<float> light;    ///< its luminance
+    std::vector<float> rows;       ///< irradiance per column: receivers × stride
+    std::vector<float> light;      ///< its luminance
     std::vector<float> unblocked;  ///< the luminance there would be without occlusion
     std::vector<float> seen;       ///< visible share of the lamps' light, see note_seen
 

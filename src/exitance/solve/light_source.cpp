@@ -27,8 +27,7 @@ class Collector {
             leaf_(id, std::span(out_.exitance).subspan(at * stride, stride));
         } else {
             const std::size_t first = out_.nodes.size();
-            for (std::size_t c = 0; c < 4; ++c)
-                append(ElementId(element.first_child.index() + c));
+            for (std::size_t c = 0; c < 4; ++c) append(ElementId(element.first_child.index() + c));
             for (std::size_t c = 0; c < 4; ++c)
                 visit(first + c, ElementId(element.first_child.index() + c));
             float open = 0;
@@ -49,16 +48,16 @@ class Collector {
         if (node.first_child != 0)
             for (std::size_t k = 0; k < 4; ++k) {
                 const LightSource::Node& child = out_.nodes[node.first_child + k];
-                node.spread = std::max(
-                    node.spread, std::abs(child.luminance - node.luminance) + child.spread);
+                node.spread = std::max(node.spread,
+                                       std::abs(child.luminance - node.luminance) + child.spread);
             }
     }
 
     void append(ElementId id) {
         const Element& element = radiosity_.mesh[id];
-        out_.nodes.push_back({Source(radiosity_.mesh.corners(element), element.count,
-                                     radiosity_.caster.middle()),
-                              0.0f, id.value, 0, 0.0f, 0.0f});
+        out_.nodes.push_back(
+            {Source(radiosity_.mesh.corners(element), element.count, radiosity_.caster.middle()),
+             0.0f, id.value, 0, 0.0f, 0.0f});
         out_.exitance.resize(out_.nodes.size() * radiosity_.columns.stride, 0.0f);
     }
 
@@ -84,7 +83,8 @@ LightSource emission_of(const Radiosity& radiosity, FaceId id) {
     const auto E = radiosity.emitted(face);
     LightSource out;
     const Source source(radiosity.mesh.corners(face), face.count, radiosity.caster.middle());
-    out.nodes.push_back({source, source.area, first_face_number | id.value, 0, radiosity.columns.luminance(E), 0.0f});
+    out.nodes.push_back({source, source.area, first_face_number | id.value, 0,
+                         radiosity.columns.luminance(E), 0.0f});
     out.exitance.assign(E.begin(), E.end());
     return out;
 }

@@ -12,20 +12,20 @@
 
 namespace exitance {
 
-/// A node's exitance is the mean of its children's, weighted by the area that is not covered. A receiver takes light from a
-/// node as a whole where that changes its irradiance by less than the tolerance, and from the
-/// children otherwise.
+/// A node's exitance is the mean of its children's, weighted by the area that is not covered. A
+/// receiver takes light from a node as a whole where that changes its irradiance by less than the
+/// tolerance, and from the children otherwise.
 struct LightSource {
     struct Node {
         Source source;
-        float open_area = 0;           ///< not covered by other objects [m²]
-        std::uint32_t number = 0;      ///< decorrelates the samples
-        std::uint32_t first_child = 0; ///< four nodes in a row; 0 = none
-        float luminance = 0;           ///< of the exitance
-        float spread = 0;              ///< largest difference to a descendant's luminance
+        float open_area = 0;            ///< not covered by other objects [m²]
+        std::uint32_t number = 0;       ///< decorrelates the samples
+        std::uint32_t first_child = 0;  ///< four nodes in a row; 0 = none
+        float luminance = 0;            ///< of the exitance
+        float spread = 0;               ///< largest difference to a descendant's luminance
     };
-    std::vector<Node> nodes;       ///< root first
-    std::vector<float> exitance;   ///< nodes × stride
+    std::vector<Node> nodes;      ///< root first
+    std::vector<float> exitance;  ///< nodes × stride
 
     std::span<const float> row(std::size_t node, std::size_t stride) const {
         return {&exitance[node * stride], stride};

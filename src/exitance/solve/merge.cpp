@@ -29,8 +29,9 @@ bool is_smooth(const Radiosity& radiosity, const Element& parent, float toleranc
         for (std::size_t c = 0; c < stride; ++c) {
             float expected = mean[c];
             if (i < parent.count)
-                expected = 0.5f * (radiosity.irradiance[parent.vertices[i]][c] +
-                                   radiosity.irradiance[parent.vertices[(i + 1) % parent.count]][c]);
+                expected =
+                    0.5f * (radiosity.irradiance[parent.vertices[i]][c] +
+                            radiosity.irradiance[parent.vertices[(i + 1) % parent.count]][c]);
             difference += radiosity.columns.weight[c] * std::abs(H[c] - expected);
         }
         if (difference > tolerance) return false;

@@ -9,8 +9,8 @@
 namespace exitance {
 
 /// Merges four leaves into their parent wherever the finished irradiance of the vertices between
-/// its corners is interpolated within `tolerance` (luminance, summed over the columns' differences).
-/// Returns the number of merges.
+/// its corners is interpolated within `tolerance` (luminance, summed over the columns'
+/// differences). Returns the number of merges.
 std::size_t merge_smooth(Radiosity& radiosity, float tolerance);
 
 }  // namespace exitance

@@ -105,6 +105,13 @@ void Radiosity::admit_new_vertices() {
     }
     exposed.resize(count);
     find_exposed(caster, two_sided_, receivers, first, std::span(exposed).subspan(first));
+    sends.resize(count);
+    parallel_for(count - first, [&](std::size_t i) {
+        const Vertex& vertex = mesh.vertices()[first + i];
+        const Face& face = mesh[vertex.face];
+        sends[first + i] = exposed[first + i] &&
+                           owns_place(caster, scene, face.polygon, vertex.sample, face.normal);
+    });
     irradiance.resize_rows(count);
     seen.resize(count, 1.0f);
     reflected.resize(count, 0.0f);
@@ -125,7 +132,7 @@ void Radiosity::receive(VertexId vertex, std::span<const float> row) {
 float Radiosity::open_share(const Element& element) const {
     float open = 0;
     for (const VertexId v : element.corners())
-        if (exposed[v.index()]) ++open;
+        if (sends[v.index()]) ++open;
     return open / static_cast<float>(element.count);
 }
 
@@ -134,7 +141,7 @@ void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
     std::fill(out.begin(), out.end(), 0.0f);
     float open = 0;
     for (const VertexId v : element.corners()) {
-        if (!exposed[v.index()]) continue;
+        if (!sends[v.index()]) continue;
         for (std::size_t c = 0; c < columns.stride; ++c) out[c] += irradiance[v][c];
         ++open;
     }
@@ -144,7 +151,8 @@ void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
 
 std::size_t Radiosity::bytes() const {
     return mesh.bytes() + receivers.bytes() + exposed.capacity() + irradiance.bytes() +
-           (seen.capacity() + reflected.capacity()) * sizeof(float) + shot.bytes();
+           (seen.capacity() + reflected.capacity()) * sizeof(float) + sends.capacity() +
+           shot.bytes();
 }
 
 }  // namespace exitance

@@ -38,8 +38,11 @@ class Radiosity {
 
     Receivers receivers;        ///< one per vertex
     std::vector<char> exposed;  ///< per vertex: open to the room (visibility/exposure.h)
-    VertexField irradiance;     ///< H; rows of vertices that are not exposed stay zero
-    std::vector<float> seen;    ///< per vertex: visible share of the lamps' light
+    /// Per vertex: exposed, and not on a place that another polygon owns. The others receive light
+    /// but send none: it is sent already, or covered.
+    std::vector<char> sends;
+    VertexField irradiance;        ///< H; rows of vertices that are not exposed stay zero
+    std::vector<float> seen;       ///< per vertex: visible share of the lamps' light
     std::vector<float> reflected;  ///< per vertex: luminance of ρ H
     ElementField shot;             ///< per leaf: reflected exitance already shot
 
@@ -55,9 +58,9 @@ class Radiosity {
     /// H of `vertex` += what one shot brought; keeps `reflected` in step.
     void receive(VertexId vertex, std::span<const float> row);
 
-    /// Share of an element's corners that are exposed, which stands for the share of its area.
+    /// Share of an element's corners that send, which stands for the share of its area.
     float open_share(const Element& element) const;
-    /// ρ H of the exposed part of an element.
+    /// ρ H of the sending part of an element.
     void reflected_exitance(ElementId leaf, std::span<float> out) const;
 
     /// Area-weighted mean reflectance (luminance) of the scene's faces.

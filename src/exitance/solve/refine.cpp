@@ -116,8 +116,8 @@ class Refinement {
             for (std::uint32_t i = 0; i < middle.count; ++i) {
                 const auto [u, v] = middle.at[i];
                 if (mesh.find_vertex(face, u, v)) continue;
-                const auto [slot, fresh] = places_.insert(
-                    {{face_id, u, v}, static_cast<std::uint32_t>(points_.size())});
+                const auto [slot, fresh] =
+                    places_.insert({{face_id, u, v}, static_cast<std::uint32_t>(points_.size())});
                 if (fresh)
                     points_.add(mesh.sample_point(element, u, v) - radiosity_.caster.middle(),
                                 mesh.normal(face, u, v),

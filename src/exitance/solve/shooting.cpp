@@ -89,8 +89,8 @@ std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& receive
     std::vector<std::uint32_t> which(receivers.size());
     std::iota(which.begin(), which.end(), 0u);
     const auto cast = [&](const LightSource& source) {
-        return cast_light(radiosity_.caster, source, receivers, which, tolerance(),
-                          options_.column, radiosity_.columns.stride, received);
+        return cast_light(radiosity_.caster, source, receivers, which, tolerance(), options_.column,
+                          radiosity_.columns.stride, received);
     };
     std::uint64_t rays = 0;
     for (const FaceId face : emitters_) rays += cast(emission_of(radiosity_, face));
@@ -139,7 +139,8 @@ void Shooting::shoot_patch(PatchId patch, const std::vector<float>& ambient) {
             return;
         }
         for (std::size_t k = 0; k < 4; ++k)
-            self(self, ElementId(element.first_child.index() + k), source.nodes[at].first_child + k);
+            self(self, ElementId(element.first_child.index() + k),
+                 source.nodes[at].first_child + k);
     };
     record(record, radiosity_.mesh[patch].root, 0);
     const LightSource::Node& root = source.nodes[0];
@@ -170,7 +171,7 @@ void Shooting::weigh_patches() {
         mesh.for_leaves(patch.root, [&](ElementId id) {
             const Element& e = mesh[id];
             for (const VertexId v : e.corners()) {
-                if (!radiosity_.exposed[v.index()]) continue;
+                if (!radiosity_.sends[v.index()]) continue;
                 weight_vertex_.push_back(v.value);
                 weight_.push_back(e.area / static_cast<float>(e.count));
                 vertex_weight_[v.index()] += weight_.back();
@@ -199,8 +200,7 @@ struct FluxSums {
 
     FluxSums& operator+=(const FluxSums& other) {
         reflected.resize(std::max(reflected.size(), other.reflected.size()), 0.0);
-        for (std::size_t c = 0; c < other.reflected.size(); ++c)
-            reflected[c] += other.reflected[c];
+        for (std::size_t c = 0; c < other.reflected.size(); ++c) reflected[c] += other.reflected[c];
         received += other.received;
         return *this;
     }
@@ -225,22 +225,22 @@ void Shooting::find_unshot() {
         },
         256);
     const std::size_t stride = radiosity_.columns.stride;
-    FluxSums sums = parallel_sum<FluxSums>(vertex_weight_.size(), [&](std::size_t begin,
-                                                                      std::size_t end) {
-        FluxSums block{std::vector<double>(stride, 0.0)};
-        std::vector<float> row(stride, 0.0f);
-        for (std::size_t v = begin; v < end; ++v) {
-            const auto H = radiosity_.irradiance[VertexId(v)];
-            const auto rho = radiosity_.rho(VertexId(v));
-            const float w = vertex_weight_[v];
-            for (std::size_t c = 0; c < stride; ++c) {
-                block.reflected[c] += static_cast<double>(w * rho[c] * H[c]);
-                row[c] += w * H[c];
+    FluxSums sums =
+        parallel_sum<FluxSums>(vertex_weight_.size(), [&](std::size_t begin, std::size_t end) {
+            FluxSums block{std::vector<double>(stride, 0.0)};
+            std::vector<float> row(stride, 0.0f);
+            for (std::size_t v = begin; v < end; ++v) {
+                const auto H = radiosity_.irradiance[VertexId(v)];
+                const auto rho = radiosity_.rho(VertexId(v));
+                const float w = vertex_weight_[v];
+                for (std::size_t c = 0; c < stride; ++c) {
+                    block.reflected[c] += static_cast<double>(w * rho[c] * H[c]);
+                    row[c] += w * H[c];
+                }
             }
-        }
-        block.received = static_cast<double>(radiosity_.columns.luminance(row));
-        return block;
-    });
+            block.received = static_cast<double>(radiosity_.columns.luminance(row));
+            return block;
+        });
     reflected_flux_ = sums.reflected;
     reflected_flux_.resize(stride, 0.0);
     received_flux_ = sums.received;
@@ -251,9 +251,8 @@ void Shooting::find_unshot() {
 double Shooting::ambient() const {
     double sum = 0;
     for (const float u : patch_unshot_) sum += static_cast<double>(u);
-    return radiosity_.area() > 0
-               ? sum / radiosity_.area() / (1.0 - radiosity_.mean_reflectance())
-               : 0.0;
+    return radiosity_.area() > 0 ? sum / radiosity_.area() / (1.0 - radiosity_.mean_reflectance())
+                                 : 0.0;
 }
 
 std::vector<float> Shooting::ambient_per_column() const {

@@ -13,9 +13,9 @@
 namespace exitance {
 
 struct ShootingOptions {
-    double error = 0.02;      ///< RMS error of irradiance relative to its mean to aim at
-    double min_area = 0;      ///< smallest element [m²]
-    double patch_area = 1;    ///< of a typical patch [m²]
+    double error = 0.02;    ///< RMS error of irradiance relative to its mean to aim at
+    double min_area = 0;    ///< smallest element [m²]
+    double patch_area = 1;  ///< of a typical patch [m²]
     bool adaptive = true;
     bool overshoot = true;
     ColumnOptions column;
@@ -26,8 +26,8 @@ class Shooting final : public Solver {
     Shooting(Radiosity& radiosity, const ShootingOptions& options);
 
     /// The first step shoots the emission of the lamps and refines the mesh for it; then patches
-    /// reflect, one a step; when little is left to shoot the mesh is refined once for all the light,
-    /// and what that changed is shot in turn.
+    /// reflect, one a step; when little is left to shoot the mesh is refined once for all the
+    /// light, and what that changed is shot in turn.
     bool step() override;
     double unshot() const override;
     double enough() const override;
@@ -71,11 +71,11 @@ class Shooting final : public Solver {
     std::vector<std::uint32_t> weight_begin_, weight_vertex_;
     std::vector<float> weight_;
     std::size_t weighed_elements_ = 0;
-    std::vector<float> vertex_weight_;  ///< area that a vertex stands for
-    std::vector<float> patch_rho_;      ///< luminance of the reflectance × area
-    std::vector<float> patch_shot_;     ///< luminance of the reflected flux already shot
-    std::vector<float> patch_unshot_;  ///< luminance × area, signed
-    double unshot_flux_ = 0;           ///< Σ |patch_unshot_|
+    std::vector<float> vertex_weight_;    ///< area that a vertex stands for
+    std::vector<float> patch_rho_;        ///< luminance of the reflectance × area
+    std::vector<float> patch_shot_;       ///< luminance of the reflected flux already shot
+    std::vector<float> patch_unshot_;     ///< luminance × area, signed
+    double unshot_flux_ = 0;              ///< Σ |patch_unshot_|
     std::vector<double> reflected_flux_;  ///< Σ A ρ H per column
     std::vector<double> shot_flux_;       ///< the part of it already shot
     std::vector<double> rho_area_;        ///< Σ A ρ per column

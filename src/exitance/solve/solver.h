@@ -27,8 +27,8 @@ class Solver {
 
 /// When to end; whichever comes first.
 struct Stop {
-    std::optional<double> unshot;   ///< share of the emitted light; default: Solver::enough()
-    std::optional<double> seconds;  ///< since `clock` was started
+    std::optional<double> unshot;     ///< share of the emitted light; default: Solver::enough()
+    std::optional<double> seconds;    ///< since `clock` was started
     std::optional<double> next_shot;  ///< least that is worth a step, a share of the emitted light
     const Cancel* cancel = nullptr;
 };

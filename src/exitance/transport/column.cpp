@@ -54,8 +54,8 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
         if (disk)
             for (std::size_t r = 0; r < block.size; ++r)
                 if (budget.probe[r])
-                    budget.probe[r] = static_cast<std::uint8_t>(std::min<std::uint16_t>(
-                        budget.most[r], std::uint16_t{255}));
+                    budget.probe[r] = static_cast<std::uint8_t>(
+                        std::min<std::uint16_t>(budget.most[r], std::uint16_t{255}));
         VisibleFractions seen;
         find_visible_fractions(caster, source, block, budget, options.occlusion, seed, seen);
         for (std::size_t r = 0; r < block.size; ++r) {

@@ -24,8 +24,8 @@ struct ColumnOptions {
 
 /// Per receiver.
 struct ColumnEntry {
-    float factor = 0;        ///< form factor receiver → source, unobstructed
-    float visible = 1;       ///< the visible share of it; 1 where the factor is 0
+    float factor = 0;   ///< form factor receiver → source, unobstructed
+    float visible = 1;  ///< the visible share of it; 1 where the factor is 0
     float received() const { return factor * visible; }
 };
 

@@ -29,9 +29,9 @@ constexpr std::uint32_t scramble(std::uint32_t key, std::uint32_t salt) {
 // One packet: sixteen receivers, one sample each.
 struct alignas(64) Task {
     std::array<float, width> x, y, z, nx, ny, nz, area_weight;
-    std::array<std::uint32_t, width> u, v;          // sample coordinates, 32-bit fractions
-    std::array<float, width> kernel, disk;          // weights of the answer
-    std::array<std::int32_t, width> above;          // sample above both horizons
+    std::array<std::uint32_t, width> u, v;  // sample coordinates, 32-bit fractions
+    std::array<float, width> kernel, disk;  // weights of the answer
+    std::array<std::int32_t, width> above;  // sample above both horizons
 };
 
 // A quad is P(u, v) = a + u b + v c + uv d, with |∂P/∂u × ∂P/∂v| = j0 + u ju + v jv; a triangle
@@ -74,8 +74,7 @@ void aim(Task& task, RayPacket& rays, const Source& source, const Parametrisatio
         const float dz = map.a.z + u * map.b.z + v * map.c.z + uv * map.d.z + ez - oz;
         const float jacobian = map.triangle ? 1.0f : map.j0 + u * map.ju + v * map.jv;
         const float receive = dx * task.nx[i] + dy * task.ny[i] + dz * task.nz[i];
-        const float send =
-            -(dx * source.normal.x + dy * source.normal.y + dz * source.normal.z);
+        const float send = -(dx * source.normal.x + dy * source.normal.y + dz * source.normal.z);
         const float square = dx * dx + dy * dy + dz * dz + 1e-30f;
         const float cosines = std::max(receive, 0.0f) * std::max(send, 0.0f) / square;
         task.kernel[i] = cosines / square * jacobian;
@@ -97,8 +96,8 @@ struct Sums {
 }  // namespace
 
 void find_visible_fractions(const RayCaster& caster, const Source& source,
-                            const ReceiverBlock& receivers, const RayBudget& budget,
-                            bool occlusion, std::uint32_t seed, VisibleFractions& out) {
+                            const ReceiverBlock& receivers, const RayBudget& budget, bool occlusion,
+                            std::uint32_t seed, VisibleFractions& out) {
     const Parametrisation map(source);
     const auto clearance = static_cast<float>(caster.clearance());
     std::array<Sums, ReceiverBlock::capacity> sums{};
@@ -180,8 +179,8 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
             const std::uint8_t r = open[k];
             const bool undecided = sums[r].any_seen == sums[r].any_hidden;  // both, or neither
             if (!undecided || goal[r] >= budget.most[r]) continue;
-            goal[r] = std::min<std::uint16_t>(budget.most[r], static_cast<std::uint16_t>(
-                                                                  std::max(8, 2 * goal[r])));
+            goal[r] = std::min<std::uint16_t>(budget.most[r],
+                                              static_cast<std::uint16_t>(std::max(8, 2 * goal[r])));
             open[kept++] = r;
         }
         open_count = kept;

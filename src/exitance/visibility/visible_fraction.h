@@ -12,8 +12,8 @@ namespace exitance {
 
 /// Per receiver of a block: how many rays to cast.
 struct RayBudget {
-    std::array<std::uint8_t, ReceiverBlock::capacity> probe;   ///< first; 0 = leave it out
-    std::array<std::uint16_t, ReceiverBlock::capacity> most;   ///< if the probes disagree, ≤ 256
+    std::array<std::uint8_t, ReceiverBlock::capacity> probe;  ///< first; 0 = leave it out
+    std::array<std::uint16_t, ReceiverBlock::capacity> most;  ///< if the probes disagree, ≤ 256
 };
 
 /// Per receiver of a block.
@@ -27,11 +27,11 @@ struct VisibleFractions {
 };
 
 /// Casts `budget.probe` rays per receiver to jittered places of the source, and goes on to
-/// `budget.most` where they disagree. Samples are a low-discrepancy sequence scrambled per receiver,
-/// stratified in every power-of-two prefix, so that stopping early does not bias. Without
+/// `budget.most` where they disagree. Samples are a low-discrepancy sequence scrambled per
+/// receiver, stratified in every power-of-two prefix, so that stopping early does not bias. Without
 /// `occlusion` nothing blocks and no ray is cast.
 void find_visible_fractions(const RayCaster& caster, const Source& source,
-                            const ReceiverBlock& receivers, const RayBudget& budget,
-                            bool occlusion, std::uint32_t seed, VisibleFractions& out);
+                            const ReceiverBlock& receivers, const RayBudget& budget, bool occlusion,
+                            std::uint32_t seed, VisibleFractions& out);
 
 }  // namespace exitance
