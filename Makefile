@@ -3,8 +3,9 @@
 .DEFAULT_GOAL := help
 .PHONY: help demo build test tsan bench tidy format clean
 
-# The scene that `make demo` lights: make demo SCENE=scenes/cornell.toml
-SCENE ?= scenes/cornell.toml
+# What `make demo` lights, and how well: make demo SCENE=scenes/cornell.toml ERROR=0.01
+SCENE ?= scenes/office.toml
+ERROR ?= 0.03
 DEMO := out/$(basename $(notdir $(SCENE)))
 
 help: ## list the targets
@@ -12,7 +13,7 @@ help: ## list the targets
 
 demo: build ## light a room: a solution file and a picture in out/
 	@mkdir -p out
-	build/bin/exitance solve $(SCENE) -o $(DEMO).glb
+	build/bin/exitance solve $(SCENE) -o $(DEMO).glb --error $(ERROR)
 	build/bin/exitance render $(DEMO).glb -o $(DEMO).png
 	@scripts/demo-notes $(DEMO)
 

@@ -73,8 +73,8 @@ class Prorad(ProgramTest):
         done = self.prorad("-o", "lit.glb")
         self.assertEqual(self.names(), ["lit.glb", "lit.png"])
         self.assertRegex(done.stdout, r"^lit\.glb: \d+ vertices")
-        self.assertEqual(extras(self.folder / "lit.glb")["unit"] if "unit" in extras(
-            self.folder / "lit.glb") else "", "")
+        # A lamp of 0.2 m × 0.2 m and 10 per square metre.
+        self.assertAlmostEqual(extras(self.folder / "lit.glb")["energy"]["emitted"], 0.4, 6)
 
     def test_threshold(self):
         shots = []
