@@ -57,15 +57,18 @@ EXITANCE_INLINE Lane cut(Lane a, Lane b, float t) {
 }  // namespace
 
 EXITANCE_MULTIVERSION
-void point_polygon_factors(const ReceiverBlock& receivers, const Source& source, float* factors) {
+void point_polygon_factors(const ReceiverBlock& receivers, const Source& source, float clearance,
+                           float* factors) {
     const std::size_t padded = (receivers.size + 15) / 16 * 16;
     // Lengths are scaled by the source so that products of four of them stay inside float.
     const float scale = 1.0f / std::sqrt(std::max(source.area, 1e-30f));
     const Vec3f c0 = source.corners[0], c1 = source.corners[1], c2 = source.corners[2],
                 c3 = source.corners[3], ns = source.normal;
     for (std::size_t r = 0; r < padded; ++r) {
-        const float px = receivers.x[r], py = receivers.y[r], pz = receivers.z[r];
         const Lane n{receivers.nx[r], receivers.ny[r], receivers.nz[r]};
+        const float px = receivers.x[r] + clearance * n.x;
+        const float py = receivers.y[r] + clearance * n.y;
+        const float pz = receivers.z[r] + clearance * n.z;
         const Lane v[4]{{(c0.x - px) * scale, (c0.y - py) * scale, (c0.z - pz) * scale},
                         {(c1.x - px) * scale, (c1.y - py) * scale, (c1.z - pz) * scale},
                         {(c2.x - px) * scale, (c2.y - py) * scale, (c2.z - pz) * scale},

@@ -82,7 +82,7 @@ LightSource emission_of(const Radiosity& radiosity, FaceId id) {
     const Face& face = radiosity.mesh[id];
     const auto E = radiosity.emitted(face);
     LightSource out;
-    const Source source(radiosity.mesh.corners(face), face.count, radiosity.caster.middle());
+    const Source source = radiosity.source(face, radiosity.mesh.corners(face));
     out.nodes.push_back({source, source.area, first_face_number | id.value, 0,
                          radiosity.columns.luminance(E), 0.0f});
     out.exitance.assign(E.begin(), E.end());

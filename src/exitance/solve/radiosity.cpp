@@ -43,6 +43,7 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
       groups(light_groups),
       columns(groups.groups, scene.bands.size()),
       caster(make_caster(scene)),
+      owners(scene, caster),
       mesh(scene, mesh_options),
       irradiance(0, columns.count),
       shot(0, columns.count) {
@@ -110,7 +111,7 @@ void Radiosity::admit_new_vertices() {
         const Vertex& vertex = mesh.vertices()[first + i];
         const Face& face = mesh[vertex.face];
         sends[first + i] = exposed[first + i] &&
-                           owns_place(caster, scene, face.polygon, vertex.sample, face.normal);
+                           owners.owns(face.polygon, face.back, vertex.sample - caster.middle());
     });
     irradiance.resize_rows(count);
     seen.resize(count, 1.0f);
@@ -147,6 +148,12 @@ void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
     }
     const auto reflectance = rho(mesh.face_of(element));
     for (std::size_t c = 0; open > 0 && c < columns.stride; ++c) out[c] *= reflectance[c] / open;
+}
+
+Source Radiosity::source(const Face& face, const std::array<Vec3, 4>& corners) const {
+    Source out(corners, face.count, caster.middle());
+    out.covers = owners.covers(face.polygon, face.back);
+    return out;
 }
 
 std::size_t Radiosity::bytes() const {

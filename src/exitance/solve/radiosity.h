@@ -11,6 +11,7 @@
 #include "exitance/mesh/mesh.h"
 #include "exitance/scene/groups.h"
 #include "exitance/scene/scene.h"
+#include "exitance/visibility/place_owners.h"
 #include "exitance/visibility/ray_caster.h"
 #include "exitance/visibility/receivers.h"
 
@@ -34,6 +35,7 @@ class Radiosity {
     LightGroups groups;
     Columns columns;
     RayCaster caster;
+    PlaceOwners owners;
     Mesh mesh;
 
     Receivers receivers;        ///< one per vertex
@@ -70,6 +72,9 @@ class Radiosity {
     double emitted_flux() const { return emitted_flux_; }
 
     const std::vector<char>& two_sided() const { return two_sided_; }
+
+    /// A polygon of `face` as a source, with what covers it.
+    Source source(const Face& face, const std::array<Vec3, 4>& corners) const;
 
     std::size_t bytes() const;
 

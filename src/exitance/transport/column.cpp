@@ -45,7 +45,8 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
         ReceiverBlock block;
         block.load(receivers, &which[begin], end - begin);
         alignas(64) std::array<float, ReceiverBlock::capacity> factors;
-        point_polygon_factors(block, source, factors.data());
+        point_polygon_factors(block, source, static_cast<float>(caster.clearance()),
+                              factors.data());
         for (std::size_t r = 0; r < block.size; ++r) entries[begin + r] = {factors[r], 1.0f};
         const bool disk = options.factor == PointFactor::disk;
         if (!options.occlusion && !disk) return;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/visibility/exposure.h"
 
-#include <cmath>
 #include <limits>
 
 #include "exitance/math/frame.h"
@@ -45,40 +44,6 @@ void find_exposed(const RayCaster& caster, std::span<const char> two_sided,
             exposed[i] = backs <= 8;
         }
     });
-}
-
-namespace {
-
-// Inside all edges of a planar convex polygon by more than `margin`.
-bool contains(std::span<const Vec3> corners, const Vec3& normal, const Vec3& p, double margin) {
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const Vec3& a = corners[i];
-        const Vec3 inward = normalized(cross(normal, corners[(i + 1) % corners.size()] - a));
-        if (dot(p - a, inward) <= margin) return false;
-    }
-    return true;
-}
-
-}  // namespace
-
-bool owns_place(const RayCaster& caster, const Scene& scene, PolygonId polygon, const Vec3& place,
-                const Vec3& normal) {
-    // Both ends of a ray keep this clear of their surfaces: what is nearer hides nothing.
-    const double near = 2 * caster.clearance();
-    bool owns = true;
-    caster.visit_near(place, near, [&](std::uint32_t other, double radius) {
-        if (!owns || other >= polygon.value) return radius;
-        const Polygon& q = scene.polygons[other];
-        const Vec3 n = scene.normal(q);
-        const double facing = dot(n, normal);
-        if (std::abs(facing) < 0.9999 || (facing < 0 && !scene.material(q).two_sided))
-            return radius;
-        const auto corners = scene.corners(q);
-        if (std::abs(dot(place - corners[0], n)) > near) return radius;
-        if (contains({corners.data(), q.size()}, n, place, near)) owns = false;
-        return radius;
-    });
-    return owns;
 }
 
 }  // namespace exitance

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "exitance/mesh/ids.h"
-#include "exitance/scene/scene.h"
 #include "exitance/visibility/ray_caster.h"
 #include "exitance/visibility/receivers.h"
 
@@ -18,11 +16,5 @@ namespace exitance {
 /// `two_sided`: per primitive of the caster.
 void find_exposed(const RayCaster& caster, std::span<const char> two_sided,
                   const Receivers& receivers, std::size_t first, std::span<char> exposed);
-
-/// Whether a place on `polygon` seen along `normal` is that polygon's own. Where several polygons
-/// share a plane and face the same way (a doubled wall, a poster drawn on one), each would send the
-/// light of all; the first of them in the scene owns the place.
-bool owns_place(const RayCaster& caster, const Scene& scene, PolygonId polygon, const Vec3& place,
-                const Vec3& normal);
 
 }  // namespace exitance

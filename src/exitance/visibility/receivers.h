@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "exitance/math/vector.h"
@@ -30,12 +31,26 @@ struct Receivers {
     std::size_t bytes() const { return x.capacity() * 7 * sizeof(float); }
 };
 
+/// A convex polygon that owns what it covers of a source's plane: inside where inward · p > offset
+/// for all four sides (a triangle repeats one).
+struct Cover {
+    std::array<Vec3f, 4> inward;
+    std::array<float, 4> offset;
+
+    bool contains(const Vec3f& p) const {
+        for (std::size_t i = 0; i < 4; ++i)
+            if (dot(inward[i], p) <= offset[i]) return false;
+        return true;
+    }
+};
+
 /// A convex planar source of three or four corners, counter-clockwise seen from its lit front.
 struct Source {
     std::array<Vec3f, 4> corners;
     std::uint32_t count = 4;
     Vec3f normal;
     float area = 0;
+    std::span<const Cover> covers{};  ///< what is covered sends nothing (place_owners.h)
 
     /// `points`: first `n` are the corners, in world coordinates.
     Source(const std::array<Vec3, 4>& points, std::uint32_t n, const Vec3& middle);

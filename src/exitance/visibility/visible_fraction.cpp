@@ -127,7 +127,16 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
         rays.active = 0;
         for (std::size_t i = 0; i < filled; ++i)
             rays.active |= static_cast<std::uint32_t>(task.above[i]) << i;
-        const std::uint32_t blocked = rays.active && occlusion ? caster.occluded(rays) : 0;
+        // Places of the source that another polygon owns are hidden without asking.
+        std::uint32_t covered = 0;
+        for (const Cover& cover : source.covers)
+            for (std::size_t i = 0; i < filled; ++i)
+                if (cover.contains({rays.origin_x[i] + rays.direction_x[i],
+                                    rays.origin_y[i] + rays.direction_y[i],
+                                    rays.origin_z[i] + rays.direction_z[i]}))
+                    covered |= 1u << i;
+        const std::uint32_t blocked =
+            covered | (rays.active && occlusion ? caster.occluded(rays) : 0);
         if (occlusion) out.rays += static_cast<std::uint64_t>(__builtin_popcount(rays.active));
         for (std::size_t i = 0; i < filled; ++i) {
             Sums& sum = sums[owner[i]];
