@@ -303,7 +303,7 @@ TEST_F(ProjectFiles, CyclesShowTheChain) {
     const auto c =
         project("[[geometry]]\nfile = \"../" + folder_.path().filename().string() + "/a.toml\"\n",
                 "c.toml");
-    expect_refused([&] { read_scene(a); }, (folder_.path() / "./c.toml").string() + ":2:8",
+    expect_refused([&] { read_scene(a); }, (folder_.path() / "c.toml").string() + ":2:8",
                    "includes itself: a.toml → b.toml → c.toml → a.toml");
     const auto self = project("[[geometry]]\nfile = \"self.toml\"\n", "self.toml");
     expect_refused([&] { read_scene(self); }, self.string() + ":2:8", "self.toml → self.toml");

@@ -89,7 +89,8 @@ class ProjectReader {
     // [[geometry]]: the file first as it is in its own unit and axes, then scaled, turned, moved.
     Part geometry(const TomlTable& table) {
         table.require("file");
-        const std::filesystem::path file = path_.parent_path() / *table.text("file");
+        const std::filesystem::path file =
+            (path_.parent_path() / *table.text("file")).lexically_normal();
         std::error_code ignored;
         if (!std::filesystem::exists(file, ignored))
             table.refuse("file", "a file; there is none at " + file.string());
