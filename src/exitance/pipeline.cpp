@@ -8,6 +8,7 @@
 
 #include "exitance/run/error.h"
 #include "exitance/solution/balance.h"
+#include "exitance/solution/error_estimate.h"
 #include "exitance/solution/extract.h"
 #include "exitance/solve/merge.h"
 #include "exitance/solve/shooting.h"
@@ -97,6 +98,7 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
 
     Solution solution = extract_solution(radiosity);
     solution.energy = energy;
+    solution.error = estimate_error(solution, options.seed);
     SolveOptions used = options;
     for (const Option& option : describe(used))
         if (option.name != "threads")  // the bytes do not depend on it

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/solution/error_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "exitance/math/warp.h"
+#include "exitance/run/random.h"
+#include "exitance/solution/gather.h"
+#include "exitance/visibility/exposure.h"
+
+namespace exitance {
+
+namespace {
+
+// Enough for a relative standard error of the estimate near a tenth.
+constexpr std::size_t point_count = 512;
+constexpr GatherOptions gather_options{512, 256, 0};
+
+struct HeldOut {
+    std::vector<GatherPoint> points;
+    std::vector<SurfacePlace> places;
+    double mean_reflectance = 0;  ///< area-weighted, luminance
+};
+
+double triangle_area(const Solution& solution, std::size_t t) {
+    const auto& [a, b, c] = solution.triangles[t];
+    const Vec3 p(solution.positions[a]), q(solution.positions[b]), r(solution.positions[c]);
+    return 0.5 * length(cross(q - p, r - p));
+}
+
+// Points spread evenly over the area of all that reflects, by systematic sampling.
+HeldOut hold_out(const Solution& solution, std::uint64_t seed) {
+    HeldOut out;
+    std::vector<double> cumulative;
+    std::vector<std::uint32_t> triangles;
+    double total = 0, reflected = 0;
+    for (const SolutionPart& part : solution.parts) {
+        const double rho = luminance(solution.materials[part.material].reflectance);
+        if (rho <= 0) continue;
+        for (std::uint32_t k = 0; k < part.triangles; ++k) {
+            const std::uint32_t t = part.first_triangle + k;
+            const double area = triangle_area(solution, t);
+            total += area, reflected += area * rho;
+            cumulative.push_back(total);
+            triangles.push_back(t);
+        }
+    }
+    if (total <= 0) return out;
+    out.mean_reflectance = reflected / total;
+    for (std::size_t i = 0; i < point_count; ++i) {
+        const double at = (static_cast<double>(i) + uniform(seed, 3 * i)) / point_count * total;
+        const auto k = static_cast<std::size_t>(
+            std::upper_bound(cumulative.begin(), cumulative.end(), at) - cumulative.begin());
+        const std::uint32_t t = triangles[std::min(k, triangles.size() - 1)];
+        const auto w = uniform_triangle({uniform(seed, 3 * i + 1), uniform(seed, 3 * i + 2)});
+        const auto& corners = solution.triangles[t];
+        Vec3 position, normal;
+        for (std::size_t c = 0; c < 3; ++c) {
+            position += Vec3(solution.positions[corners[c]]) * w[c];
+            normal += Vec3(solution.normals[corners[c]]) * w[c];
+        }
+        out.points.push_back({position, normalized(normal)});
+        out.places.push_back({t, {w[0], w[1], w[2]}});
+    }
+    return out;
+}
+
+// Points that lie under or inside other objects are nobody's to see.
+void drop_buried(const Surfaces& surfaces, HeldOut& held) {
+    const Solution& solution = surfaces.solution();
+    std::vector<char> two_sided(solution.triangles.size());
+    for (const SolutionPart& part : solution.parts)
+        std::fill_n(two_sided.begin() + part.first_triangle, part.triangles,
+                    solution.materials[part.material].two_sided);
+    Receivers receivers;
+    for (const GatherPoint& p : held.points)
+        receivers.add(p.position - surfaces.caster().middle(), p.normal,
+                      static_cast<std::uint32_t>(receivers.size()));
+    std::vector<char> exposed(held.points.size());
+    find_exposed(surfaces.caster(), two_sided, receivers, 0, exposed);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < exposed.size(); ++i) {
+        if (!exposed[i]) continue;
+        held.points[kept] = held.points[i];
+        held.places[kept++] = held.places[i];
+    }
+    held.points.resize(kept);
+    held.places.resize(kept);
+}
+
+}  // namespace
+
+std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint64_t seed) {
+    HeldOut held = hold_out(solution, hash_bits(seed, 0xe57u));
+    if (held.points.empty()) return std::nullopt;
+    const Surfaces surfaces(solution, Backs::black);
+    drop_buried(surfaces, held);
+    const std::size_t columns = solution.columns(), n = held.points.size();
+    if (n == 0) return std::nullopt;
+    std::vector<double> first(n * columns), second(n * columns), told(columns);
+    GatherOptions options = gather_options;
+    options.seed = hash_bits(seed, 1);
+    gather(surfaces, held.points, first, options);
+    options.seed = hash_bits(seed, 2);
+    gather(surfaces, held.points, second, options);
+
+    const Spectrum band_weight = luminance_weights(solution.bands.size());
+    const auto level = [&](const double* row) {
+        double sum = 0;
+        for (std::size_t c = 0; c < columns; ++c)
+            sum += solution.groups[c / solution.bands.size()].weight *
+                   band_weight[c % solution.bands.size()] * row[c];
+        return sum;
+    };
+    double mean = 0, bias = 0;
+    std::vector<double> squares(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        surfaces.irradiance(held.places[i], told);
+        const double here = level(told.data());
+        const double a = here - level(&first[i * columns]), b = here - level(&second[i * columns]);
+        mean += 0.5 * ((here - a) + (here - b)) / static_cast<double>(n);
+        bias += 0.5 * (a + b) / static_cast<double>(n);
+        squares[i] = a * b;
+    }
+    if (mean <= 0) return std::nullopt;
+    double square = 0, spread = 0;
+    for (const double s : squares) square += s / static_cast<double>(n);
+    for (const double s : squares) spread += (s - square) * (s - square);
+    const double repeated = bias / (1.0 - std::min(held.mean_reflectance, 0.99));
+    const double total = std::max(0.0, square - bias * bias) + repeated * repeated;
+    ErrorEstimate out;
+    out.points = static_cast<std::uint32_t>(n);
+    out.rms = std::sqrt(total) / mean;
+    // d√x = dx / 2√x; `spread` / n² is the variance of the mean square.
+    const double deviation = std::sqrt(spread) / static_cast<double>(n) / (mean * mean);
+    out.confidence = out.rms > 0 ? deviation / (2 * out.rms) : std::sqrt(deviation);
+    return out;
+}
+
+}  // namespace exitance
