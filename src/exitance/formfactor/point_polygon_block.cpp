@@ -54,52 +54,87 @@ EXITANCE_INLINE Lane cut(Lane a, Lane b, float t) {
     return {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.z + (b.z - a.z) * t};
 }
 
+constexpr std::size_t width = 16;
+
+// A receiver sees the source only if it stands before its front and one corner is above its
+// horizon.
+EXITANCE_INLINE float reach(const ReceiverBlock& receivers, const Source& source, float clearance,
+                            std::size_t r) {
+    const Lane n{receivers.nx[r], receivers.ny[r], receivers.nz[r]};
+    const float px = receivers.x[r] + clearance * n.x;
+    const float py = receivers.y[r] + clearance * n.y;
+    const float pz = receivers.z[r] + clearance * n.z;
+    float highest = -1.0f;
+#pragma GCC unroll 4
+    for (std::size_t i = 0; i < 4; ++i) {
+        const Vec3f& c = source.corners[i];
+        highest = std::max(highest, (c.x - px) * n.x + (c.y - py) * n.y + (c.z - pz) * n.z);
+    }
+    const Vec3f &c0 = source.corners[0], &ns = source.normal;
+    const float front = (px - c0.x) * ns.x + (py - c0.y) * ns.y + (pz - c0.z) * ns.z;
+    return std::min(front, highest);
+}
+
+EXITANCE_INLINE float factor_of(const ReceiverBlock& receivers, const Source& source,
+                                float clearance, float scale, std::size_t r) {
+    const Vec3f c0 = source.corners[0], c1 = source.corners[1], c2 = source.corners[2],
+                c3 = source.corners[3];
+    const Lane n{receivers.nx[r], receivers.ny[r], receivers.nz[r]};
+    const float px = receivers.x[r] + clearance * n.x;
+    const float py = receivers.y[r] + clearance * n.y;
+    const float pz = receivers.z[r] + clearance * n.z;
+    const Lane v[4]{{(c0.x - px) * scale, (c0.y - py) * scale, (c0.z - pz) * scale},
+                    {(c1.x - px) * scale, (c1.y - py) * scale, (c1.z - pz) * scale},
+                    {(c2.x - px) * scale, (c2.y - py) * scale, (c2.z - pz) * scale},
+                    {(c3.x - px) * scale, (c3.y - py) * scale, (c3.z - pz) * scale}};
+    float sum = 0.0f, crossed = 0.0f;
+    Lane leaves{0, 0, 0}, enters{0, 0, 0};
+#pragma GCC unroll 4
+    for (int i = 0; i < 4; ++i) {
+        const Lane a = v[i], b = v[(i + 1) & 3];
+        const float ha = a.x * n.x + a.y * n.y + a.z * n.z;
+        const float hb = b.x * n.x + b.y * n.y + b.z * n.z;
+        const float t = ha / (ha - hb == 0.0f ? 1.0f : ha - hb);
+        const Lane at = cut(a, b, t);
+        const bool a_below = ha <= 0.0f, b_below = hb <= 0.0f;
+        const bool rises = a_below & !b_below, sinks = !a_below & b_below;
+        const Lane from{rises ? at.x : a.x, rises ? at.y : a.y, rises ? at.z : a.z};
+        const Lane to{sinks ? at.x : b.x, sinks ? at.y : b.y, sinks ? at.z : b.z};
+        enters.x = rises ? at.x : enters.x;
+        enters.y = rises ? at.y : enters.y;
+        enters.z = rises ? at.z : enters.z;
+        leaves.x = sinks ? at.x : leaves.x;
+        leaves.y = sinks ? at.y : leaves.y;
+        leaves.z = sinks ? at.z : leaves.z;
+        crossed = (rises | sinks) ? 1.0f : crossed;
+        const float term = edge_term(from, to, n);
+        sum += (a_below & b_below) ? 0.0f : term;
+    }
+    sum += crossed * edge_term(leaves, enters, n);
+    return std::min(std::max(-sum * (0.5f / std::numbers::pi_v<float>), 0.0f), 1.0f);
+}
+
 }  // namespace
 
 EXITANCE_MULTIVERSION
 void point_polygon_factors(const ReceiverBlock& receivers, const Source& source, float clearance,
                            float* factors) {
-    const std::size_t padded = (receivers.size + 15) / 16 * 16;
     // Lengths are scaled by the source so that products of four of them stay inside float.
     const float scale = 1.0f / std::sqrt(std::max(source.area, 1e-30f));
-    const Vec3f c0 = source.corners[0], c1 = source.corners[1], c2 = source.corners[2],
-                c3 = source.corners[3], ns = source.normal;
-    for (std::size_t r = 0; r < padded; ++r) {
-        const Lane n{receivers.nx[r], receivers.ny[r], receivers.nz[r]};
-        const float px = receivers.x[r] + clearance * n.x;
-        const float py = receivers.y[r] + clearance * n.y;
-        const float pz = receivers.z[r] + clearance * n.z;
-        const Lane v[4]{{(c0.x - px) * scale, (c0.y - py) * scale, (c0.z - pz) * scale},
-                        {(c1.x - px) * scale, (c1.y - py) * scale, (c1.z - pz) * scale},
-                        {(c2.x - px) * scale, (c2.y - py) * scale, (c2.z - pz) * scale},
-                        {(c3.x - px) * scale, (c3.y - py) * scale, (c3.z - pz) * scale}};
-        float sum = 0.0f, crossed = 0.0f;
-        Lane leaves{0, 0, 0}, enters{0, 0, 0};
-#pragma GCC unroll 4
-        for (int i = 0; i < 4; ++i) {
-            const Lane a = v[i], b = v[(i + 1) & 3];
-            const float ha = a.x * n.x + a.y * n.y + a.z * n.z;
-            const float hb = b.x * n.x + b.y * n.y + b.z * n.z;
-            const float t = ha / (ha - hb == 0.0f ? 1.0f : ha - hb);
-            const Lane at = cut(a, b, t);
-            const bool a_below = ha <= 0.0f, b_below = hb <= 0.0f;
-            const bool rises = a_below & !b_below, sinks = !a_below & b_below;
-            const Lane from{rises ? at.x : a.x, rises ? at.y : a.y, rises ? at.z : a.z};
-            const Lane to{sinks ? at.x : b.x, sinks ? at.y : b.y, sinks ? at.z : b.z};
-            enters.x = rises ? at.x : enters.x;
-            enters.y = rises ? at.y : enters.y;
-            enters.z = rises ? at.z : enters.z;
-            leaves.x = sinks ? at.x : leaves.x;
-            leaves.y = sinks ? at.y : leaves.y;
-            leaves.z = sinks ? at.z : leaves.z;
-            crossed = (rises | sinks) ? 1.0f : crossed;
-            const float term = edge_term(from, to, n);
-            sum += (a_below & b_below) ? 0.0f : term;
+    for (std::size_t first = 0; first < receivers.size; first += width) {
+        alignas(64) float reaches[width];
+        float farthest = 0.0f;
+        for (std::size_t k = 0; k < width; ++k)
+            reaches[k] = reach(receivers, source, clearance, first + k);
+        for (std::size_t k = 0; k < width; ++k) farthest = std::max(farthest, reaches[k]);
+        if (farthest <= 0.0f) {
+            for (std::size_t k = 0; k < width; ++k) factors[first + k] = 0.0f;
+            continue;
         }
-        sum += crossed * edge_term(leaves, enters, n);
-        const float front = -(v[0].x * ns.x + v[0].y * ns.y + v[0].z * ns.z);
-        const float factor = -sum * (0.5f / std::numbers::pi_v<float>);
-        factors[r] = front > 0.0f ? std::min(std::max(factor, 0.0f), 1.0f) : 0.0f;
+        for (std::size_t k = 0; k < width; ++k) {
+            const float factor = factor_of(receivers, source, clearance, scale, first + k);
+            factors[first + k] = reaches[k] > 0.0f ? factor : 0.0f;
+        }
     }
 }
 

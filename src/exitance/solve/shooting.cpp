@@ -150,13 +150,51 @@ void Shooting::shoot_patch(PatchId patch, const std::vector<float>& ambient) {
     find_unshot();
 }
 
+namespace {
+
+struct FluxSums {
+    std::vector<double> reflected;
+    double received = 0;
+
+    FluxSums& operator+=(const FluxSums& other) {
+        reflected.resize(std::max(reflected.size(), other.reflected.size()), 0.0);
+        for (std::size_t c = 0; c < other.reflected.size(); ++c) reflected[c] += other.reflected[c];
+        received += other.received;
+        return *this;
+    }
+};
+
+}  // namespace
+
+// Adds what a shot brought to the vertices, and to the sums that are kept of them.
 void Shooting::deliver(const Received& received) {
-    const std::size_t stride = radiosity_.columns.stride;
-    parallel_for(received.light.size(), [&](std::size_t v) {
-        if (radiosity_.exposed[v] && received.unblocked[v] != 0)
-            radiosity_.receive(VertexId(v), received.row(v, stride));
-    });
     weigh_patches();
+    const std::size_t stride = radiosity_.columns.stride;
+    const FluxSums sums =
+        parallel_sum<FluxSums>(received.light.size(), [&](std::size_t begin, std::size_t end) {
+            FluxSums block{std::vector<double>(stride, 0.0)};
+            std::vector<float> total(stride, 0.0f);
+            for (std::size_t v = begin; v < end; ++v) {
+                if (!radiosity_.exposed[v] || received.unblocked[v] == 0) continue;
+                const auto row = received.row(v, stride);
+                radiosity_.receive(VertexId(v), row);
+                add_flux(v, row, total, block.reflected);
+            }
+            block.received = static_cast<double>(radiosity_.columns.luminance(total));
+            return block;
+        });
+    for (std::size_t c = 0; c < sums.reflected.size(); ++c) reflected_flux_[c] += sums.reflected[c];
+    received_flux_ += sums.received;
+}
+
+void Shooting::add_flux(std::size_t vertex, std::span<const float> row, std::vector<float>& total,
+                        std::vector<double>& reflected) const {
+    const auto rho = radiosity_.rho(VertexId(vertex));
+    const float w = vertex_weight_[vertex];
+    for (std::size_t c = 0; c < row.size(); ++c) {
+        reflected[c] += static_cast<double>(w * rho[c] * row[c]);
+        total[c] += w * row[c];
+    }
 }
 
 void Shooting::weigh_patches() {
@@ -189,24 +227,15 @@ void Shooting::weigh_patches() {
             for (std::size_t c = 0; c < shot.size(); ++c) shot_flux_[c] += double(open * shot[c]);
         });
     }
+    // Of the light received so far:
+    const std::size_t stride = radiosity_.columns.stride;
+    reflected_flux_.assign(stride, 0.0);
+    std::vector<float> total(stride, 0.0f);
+    for (std::size_t v = 0; v < vertex_weight_.size(); ++v)
+        add_flux(v, radiosity_.irradiance[VertexId(v)], total, reflected_flux_);
+    received_flux_ = static_cast<double>(radiosity_.columns.luminance(total));
     received_area_ = std::accumulate(vertex_weight_.begin(), vertex_weight_.end(), 0.0);
 }
-
-namespace {
-
-struct FluxSums {
-    std::vector<double> reflected;
-    double received = 0;
-
-    FluxSums& operator+=(const FluxSums& other) {
-        reflected.resize(std::max(reflected.size(), other.reflected.size()), 0.0);
-        for (std::size_t c = 0; c < other.reflected.size(); ++c) reflected[c] += other.reflected[c];
-        received += other.received;
-        return *this;
-    }
-};
-
-}  // namespace
 
 void Shooting::find_unshot() {
     weigh_patches();
@@ -224,26 +253,6 @@ void Shooting::find_unshot() {
             return sum;
         },
         256);
-    const std::size_t stride = radiosity_.columns.stride;
-    FluxSums sums =
-        parallel_sum<FluxSums>(vertex_weight_.size(), [&](std::size_t begin, std::size_t end) {
-            FluxSums block{std::vector<double>(stride, 0.0)};
-            std::vector<float> row(stride, 0.0f);
-            for (std::size_t v = begin; v < end; ++v) {
-                const auto H = radiosity_.irradiance[VertexId(v)];
-                const auto rho = radiosity_.rho(VertexId(v));
-                const float w = vertex_weight_[v];
-                for (std::size_t c = 0; c < stride; ++c) {
-                    block.reflected[c] += static_cast<double>(w * rho[c] * H[c]);
-                    row[c] += w * H[c];
-                }
-            }
-            block.received = static_cast<double>(radiosity_.columns.luminance(row));
-            return block;
-        });
-    reflected_flux_ = sums.reflected;
-    reflected_flux_.resize(stride, 0.0);
-    received_flux_ = sums.received;
     if (received_area_ > 0)
         mean_irradiance_ = received_flux_ / received_area_ + std::max(0.0, ambient());
 }

@@ -52,6 +52,8 @@ class Shooting final : public Solver {
     std::uint64_t illuminate(const Receivers& receivers, Received& received);
     void refine_mesh();
     void deliver(const Received& received);
+    void add_flux(std::size_t vertex, std::span<const float> row, std::vector<float>& total,
+                  std::vector<double>& reflected) const;
     struct Brightest {
         std::size_t patch = 0;
         float moved = 0;  ///< luminance-weighted flux

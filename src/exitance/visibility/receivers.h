@@ -63,7 +63,8 @@ struct alignas(64) ReceiverBlock {
     std::array<std::uint32_t, capacity> key;
     std::size_t size = 0;
 
-    /// Receivers `which[0 … n)`, n ≤ capacity; the rest is filled with copies of the last.
+    /// Receivers `which[0 … n)`, increasing, n ≤ capacity; the rest is filled with copies of the
+    /// last.
     void load(const Receivers& all, const std::uint32_t* which, std::size_t n);
 };
 

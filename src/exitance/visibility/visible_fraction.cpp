@@ -17,8 +17,9 @@ constexpr std::size_t most_samples = 256;
 
 // The first points of Sobol's sequence; a receiver's own pattern is an exclusive-or away.
 constexpr auto sobol_points = [] {
-    std::array<std::array<std::uint32_t, 2>, most_samples> points{};
-    for (std::uint32_t i = 0; i < most_samples; ++i) points[i] = sobol(i);
+    std::array<std::array<std::uint32_t, most_samples>, 2> points{};
+    for (std::uint32_t i = 0; i < most_samples; ++i)
+        points[0][i] = sobol(i)[0], points[1][i] = sobol(i)[1];
     return points;
 }();
 
@@ -26,13 +27,15 @@ constexpr std::uint32_t scramble(std::uint32_t key, std::uint32_t salt) {
     return static_cast<std::uint32_t>(hash_bits(std::uint64_t{key} << 32 | salt));
 }
 
-// One packet: sixteen receivers, one sample each.
+// One packet: which receivers, which sample of each.
 struct alignas(64) Task {
-    std::array<float, width> x, y, z, nx, ny, nz, area_weight;
-    std::array<std::uint32_t, width> u, v;  // sample coordinates, 32-bit fractions
+    std::array<std::uint32_t, width> owner, sample;
+    std::array<float, width> inverse_samples;
     std::array<float, width> kernel, disk;  // weights of the answer
     std::array<std::int32_t, width> above;  // sample above both horizons
 };
+
+using Pattern = std::array<std::uint32_t, ReceiverBlock::capacity>;
 
 // A quad is P(u, v) = a + u b + v c + uv d, with |∂P/∂u × ∂P/∂v| = j0 + u ju + v jv; a triangle
 // folds the unit square by the square root (area-preserving).
@@ -54,32 +57,37 @@ struct Parametrisation {
 
 EXITANCE_MULTIVERSION
 void aim(Task& task, RayPacket& rays, const Source& source, const Parametrisation& map,
-         float clearance, const float* inverse_samples) {
+         float clearance, const ReceiverBlock& receivers, const Pattern& pattern_u,
+         const Pattern& pattern_v) {
     const float ex = source.normal.x * clearance, ey = source.normal.y * clearance,
                 ez = source.normal.z * clearance;
     for (std::size_t i = 0; i < width; ++i) {
-        float u = static_cast<float>(static_cast<std::int32_t>(task.u[i] >> 8)) * 0x1.0p-24f;
-        float v = static_cast<float>(static_cast<std::int32_t>(task.v[i] >> 8)) * 0x1.0p-24f;
+        const std::uint32_t r = task.owner[i];
+        const std::uint32_t bits_u = sobol_points[0][task.sample[i]] ^ pattern_u[r];
+        const std::uint32_t bits_v = sobol_points[1][task.sample[i]] ^ pattern_v[r];
+        float u = static_cast<float>(static_cast<std::int32_t>(bits_u >> 8)) * 0x1.0p-24f;
+        float v = static_cast<float>(static_cast<std::int32_t>(bits_v >> 8)) * 0x1.0p-24f;
+        const float nx = receivers.nx[r], ny = receivers.ny[r], nz = receivers.nz[r];
         if (map.triangle) {
             const float s = std::sqrt(u);
             u = s * (1.0f - v), v = s * v;
         }
-        const float ox = task.x[i] + task.nx[i] * clearance;
-        const float oy = task.y[i] + task.ny[i] * clearance;
-        const float oz = task.z[i] + task.nz[i] * clearance;
+        const float ox = receivers.x[r] + nx * clearance;
+        const float oy = receivers.y[r] + ny * clearance;
+        const float oz = receivers.z[r] + nz * clearance;
         const float uv = u * v;
         // Both ends stand clear of their surfaces, so that neither blocks its own light.
         const float dx = map.a.x + u * map.b.x + v * map.c.x + uv * map.d.x + ex - ox;
         const float dy = map.a.y + u * map.b.y + v * map.c.y + uv * map.d.y + ey - oy;
         const float dz = map.a.z + u * map.b.z + v * map.c.z + uv * map.d.z + ez - oz;
         const float jacobian = map.triangle ? 1.0f : map.j0 + u * map.ju + v * map.jv;
-        const float receive = dx * task.nx[i] + dy * task.ny[i] + dz * task.nz[i];
+        const float receive = dx * nx + dy * ny + dz * nz;
         const float send = -(dx * source.normal.x + dy * source.normal.y + dz * source.normal.z);
         const float square = dx * dx + dy * dy + dz * dz + 1e-30f;
         const float cosines = std::max(receive, 0.0f) * std::max(send, 0.0f) / square;
         task.kernel[i] = cosines / square * jacobian;
         task.disk[i] = source.area * cosines /
-                       (std::numbers::pi_v<float> * square + source.area * inverse_samples[i]);
+                       (std::numbers::pi_v<float> * square + source.area * task.inverse_samples[i]);
         task.above[i] = cosines > 0.0f ? 1 : 0;
         rays.origin_x[i] = ox, rays.origin_y[i] = oy, rays.origin_z[i] = oz;
         rays.direction_x[i] = dx, rays.direction_y[i] = dy, rays.direction_z[i] = dz;
@@ -101,29 +109,25 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
     const Parametrisation map(source);
     const auto clearance = static_cast<float>(caster.clearance());
     std::array<Sums, ReceiverBlock::capacity> sums{};
-    std::array<std::array<std::uint32_t, 2>, ReceiverBlock::capacity> pattern;
+    Pattern pattern_u, pattern_v;
     std::array<std::uint8_t, ReceiverBlock::capacity> open;  // receivers still wanting rays
     std::size_t open_count = 0;
     for (std::size_t r = 0; r < receivers.size; ++r) {
         if (budget.probe[r] == 0) continue;
         const std::uint32_t own = scramble(receivers.key[r], seed);
-        pattern[r] = {own, scramble(own, seed)};
+        pattern_u[r] = own, pattern_v[r] = scramble(own, seed);
         open[open_count++] = static_cast<std::uint8_t>(r);
     }
 
     Task task;
     RayPacket rays;
-    std::array<std::uint8_t, width> owner;
-    std::array<float, width> inverse_samples;
     std::size_t filled = 0;
     const auto cast = [&] {
         for (std::size_t i = filled; i < width; ++i) {  // idle lanes repeat the first
-            task.x[i] = task.x[0], task.y[i] = task.y[0], task.z[i] = task.z[0];
-            task.nx[i] = task.nx[0], task.ny[i] = task.ny[0], task.nz[i] = task.nz[0];
-            task.u[i] = task.u[0], task.v[i] = task.v[0];
-            inverse_samples[i] = inverse_samples[0];
+            task.owner[i] = task.owner[0], task.sample[i] = task.sample[0];
+            task.inverse_samples[i] = task.inverse_samples[0];
         }
-        aim(task, rays, source, map, clearance, inverse_samples.data());
+        aim(task, rays, source, map, clearance, receivers, pattern_u, pattern_v);
         rays.active = 0;
         for (std::size_t i = 0; i < filled; ++i)
             rays.active |= static_cast<std::uint32_t>(task.above[i]) << i;
@@ -139,7 +143,7 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
             covered | (rays.active && occlusion ? caster.occluded(rays) : 0);
         if (occlusion) out.rays += static_cast<std::uint64_t>(__builtin_popcount(rays.active));
         for (std::size_t i = 0; i < filled; ++i) {
-            Sums& sum = sums[owner[i]];
+            Sums& sum = sums[task.owner[i]];
             ++sum.samples;
             if (!(rays.active >> i & 1u)) continue;
             sum.kernel += task.kernel[i];
@@ -171,14 +175,9 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
             for (std::size_t k = 0; k < open_count; ++k) {
                 const std::uint8_t r = open[k];
                 if (s < from[r] || s >= goal[r]) continue;
-                task.x[filled] = receivers.x[r], task.y[filled] = receivers.y[r],
-                task.z[filled] = receivers.z[r];
-                task.nx[filled] = receivers.nx[r], task.ny[filled] = receivers.ny[r],
-                task.nz[filled] = receivers.nz[r];
-                task.u[filled] = sobol_points[s][0] ^ pattern[r][0];
-                task.v[filled] = sobol_points[s][1] ^ pattern[r][1];
-                inverse_samples[filled] = 1.0f / static_cast<float>(goal[r]);
-                owner[filled] = r;
+                task.owner[filled] = r;
+                task.sample[filled] = s;
+                task.inverse_samples[filled] = 1.0f / static_cast<float>(goal[r]);
                 if (++filled == width) cast();
             }
         }
