@@ -77,8 +77,8 @@ EXITANCE_INLINE float reach(const ReceiverBlock& receivers, const Source& source
 
 EXITANCE_INLINE float factor_of(const ReceiverBlock& receivers, const Source& source,
                                 float clearance, float scale, std::size_t r) {
-    const Vec3f c0 = source.corners[0], c1 = source.corners[1], c2 = source.corners[2],
-                c3 = source.corners[3];
+    const Vec3f &c0 = source.corners[0], &c1 = source.corners[1];
+    const Vec3f &c2 = source.corners[2], &c3 = source.corners[3];
     const Lane n{receivers.nx[r], receivers.ny[r], receivers.nz[r]};
     const float px = receivers.x[r] + clearance * n.x;
     const float py = receivers.y[r] + clearance * n.y;
@@ -122,19 +122,23 @@ void point_polygon_factors(const ReceiverBlock& receivers, const Source& source,
     // Lengths are scaled by the source so that products of four of them stay inside float.
     const float scale = 1.0f / std::sqrt(std::max(source.area, 1e-30f));
     for (std::size_t first = 0; first < receivers.size; first += width) {
-        alignas(64) float reaches[width];
+        alignas(64) float reaches[width], found[width];
         float farthest = 0.0f;
+        // Left to the vectoriser as loops: unrolled they would be scalar.
+#pragma GCC unroll 1
         for (std::size_t k = 0; k < width; ++k)
             reaches[k] = reach(receivers, source, clearance, first + k);
+#pragma GCC unroll 1
         for (std::size_t k = 0; k < width; ++k) farthest = std::max(farthest, reaches[k]);
         if (farthest <= 0.0f) {
-            for (std::size_t k = 0; k < width; ++k) factors[first + k] = 0.0f;
+            std::fill_n(factors + first, width, 0.0f);
             continue;
         }
-        for (std::size_t k = 0; k < width; ++k) {
-            const float factor = factor_of(receivers, source, clearance, scale, first + k);
-            factors[first + k] = reaches[k] > 0.0f ? factor : 0.0f;
-        }
+#pragma GCC unroll 1
+        for (std::size_t k = 0; k < width; ++k)
+            found[k] = factor_of(receivers, source, clearance, scale, first + k);
+        for (std::size_t k = 0; k < width; ++k)
+            factors[first + k] = reaches[k] > 0.0f ? found[k] : 0.0f;
     }
 }
 

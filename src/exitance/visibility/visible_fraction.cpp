@@ -31,8 +31,7 @@ constexpr std::uint32_t scramble(std::uint32_t key, std::uint32_t salt) {
 struct alignas(64) Task {
     std::array<std::uint32_t, width> owner, sample;
     std::array<float, width> inverse_samples;
-    std::array<float, width> kernel, disk;  // weights of the answer
-    std::array<std::int32_t, width> above;  // sample above both horizons
+    std::array<float, width> kernel, disk;  // weights of the answer, 0 below either horizon
 };
 
 using Pattern = std::array<std::uint32_t, ReceiverBlock::capacity>;
@@ -42,9 +41,10 @@ using Pattern = std::array<std::uint32_t, ReceiverBlock::capacity>;
 struct Parametrisation {
     Vec3f a, b, c, d;
     float j0, ju, jv;
-    bool triangle;
+    float fold;  // 1 for a triangle, 0 for a quad
 
-    explicit Parametrisation(const Source& s) : triangle(s.count == 3) {
+    explicit Parametrisation(const Source& s) {
+        const bool triangle = s.count == 3;
         a = s.corners[0];
         b = s.corners[1] - a;
         c = (triangle ? s.corners[2] : s.corners[3]) - a;
@@ -52,8 +52,14 @@ struct Parametrisation {
         j0 = dot(s.normal, cross(b, c));
         ju = dot(s.normal, cross(b, d));
         jv = dot(s.normal, cross(d, c));
+        fold = triangle ? 1.0f : 0.0f;
     }
 };
+
+// max(x, 0) without a comparison, which would keep the loop from being vectorised.
+[[gnu::always_inline]] inline float positive_part(float x) {
+    return 0.5f * (x + std::abs(x));
+}
 
 EXITANCE_MULTIVERSION
 void aim(Task& task, RayPacket& rays, const Source& source, const Parametrisation& map,
@@ -61,34 +67,46 @@ void aim(Task& task, RayPacket& rays, const Source& source, const Parametrisatio
          const Pattern& pattern_v) {
     const float ex = source.normal.x * clearance, ey = source.normal.y * clearance,
                 ez = source.normal.z * clearance;
+    alignas(64) float x[width], y[width], z[width], nx[width], ny[width], nz[width];
+    alignas(64) std::int32_t bits_u[width], bits_v[width];
     for (std::size_t i = 0; i < width; ++i) {
-        const std::uint32_t r = task.owner[i];
-        const std::uint32_t bits_u = sobol_points[0][task.sample[i]] ^ pattern_u[r];
-        const std::uint32_t bits_v = sobol_points[1][task.sample[i]] ^ pattern_v[r];
-        float u = static_cast<float>(static_cast<std::int32_t>(bits_u >> 8)) * 0x1.0p-24f;
-        float v = static_cast<float>(static_cast<std::int32_t>(bits_v >> 8)) * 0x1.0p-24f;
-        const float nx = receivers.nx[r], ny = receivers.ny[r], nz = receivers.nz[r];
-        if (map.triangle) {
-            const float s = std::sqrt(u);
-            u = s * (1.0f - v), v = s * v;
-        }
-        const float ox = receivers.x[r] + nx * clearance;
-        const float oy = receivers.y[r] + ny * clearance;
-        const float oz = receivers.z[r] + nz * clearance;
+        const std::uint32_t r = task.owner[i], sample = task.sample[i];
+        x[i] = receivers.x[r], y[i] = receivers.y[r], z[i] = receivers.z[r];
+        nx[i] = receivers.nx[r], ny[i] = receivers.ny[r], nz[i] = receivers.nz[r];
+        bits_u[i] = static_cast<std::int32_t>((sobol_points[0][sample] ^ pattern_u[r]) >> 8);
+        bits_v[i] = static_cast<std::int32_t>((sobol_points[1][sample] ^ pattern_v[r]) >> 8);
+    }
+    // By value: as references they might alias what the loop writes.
+    const float ax = map.a.x + ex, ay = map.a.y + ey, az = map.a.z + ez;
+    const float bx = map.b.x, by = map.b.y, bz = map.b.z;
+    const float cx = map.c.x, cy = map.c.y, cz = map.c.z;
+    const float wx = map.d.x, wy = map.d.y, wz = map.d.z;
+    const float j0 = map.j0, ju = map.ju, jv = map.jv, fold = map.fold;
+    const float mx = source.normal.x, my = source.normal.y, mz = source.normal.z;
+    const float area = source.area;
+#pragma GCC unroll 1  // left to the vectoriser as a loop
+    for (std::size_t i = 0; i < width; ++i) {
+        const float s = static_cast<float>(bits_u[i]) * 0x1.0p-24f;
+        const float t = static_cast<float>(bits_v[i]) * 0x1.0p-24f;
+        const float root = std::sqrt(s);
+        const float u = s + fold * (root * (1.0f - t) - s);
+        const float v = t + fold * (root * t - t);
+        const float ox = x[i] + nx[i] * clearance;
+        const float oy = y[i] + ny[i] * clearance;
+        const float oz = z[i] + nz[i] * clearance;
         const float uv = u * v;
         // Both ends stand clear of their surfaces, so that neither blocks its own light.
-        const float dx = map.a.x + u * map.b.x + v * map.c.x + uv * map.d.x + ex - ox;
-        const float dy = map.a.y + u * map.b.y + v * map.c.y + uv * map.d.y + ey - oy;
-        const float dz = map.a.z + u * map.b.z + v * map.c.z + uv * map.d.z + ez - oz;
-        const float jacobian = map.triangle ? 1.0f : map.j0 + u * map.ju + v * map.jv;
-        const float receive = dx * nx + dy * ny + dz * nz;
-        const float send = -(dx * source.normal.x + dy * source.normal.y + dz * source.normal.z);
+        const float dx = ax + u * bx + v * cx + uv * wx - ox;
+        const float dy = ay + u * by + v * cy + uv * wy - oy;
+        const float dz = az + u * bz + v * cz + uv * wz - oz;
+        const float jacobian = j0 + u * ju + v * jv;
+        const float receive = dx * nx[i] + dy * ny[i] + dz * nz[i];
+        const float send = -(dx * mx + dy * my + dz * mz);
         const float square = dx * dx + dy * dy + dz * dz + 1e-30f;
-        const float cosines = std::max(receive, 0.0f) * std::max(send, 0.0f) / square;
+        const float cosines = positive_part(receive) * positive_part(send) / square;
         task.kernel[i] = cosines / square * jacobian;
-        task.disk[i] = source.area * cosines /
-                       (std::numbers::pi_v<float> * square + source.area * task.inverse_samples[i]);
-        task.above[i] = cosines > 0.0f ? 1 : 0;
+        task.disk[i] =
+            area * cosines / (std::numbers::pi_v<float> * square + area * task.inverse_samples[i]);
         rays.origin_x[i] = ox, rays.origin_y[i] = oy, rays.origin_z[i] = oz;
         rays.direction_x[i] = dx, rays.direction_y[i] = dy, rays.direction_z[i] = dz;
         rays.near[i] = 0.0f, rays.far[i] = 1.0f;
@@ -130,7 +148,7 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
         aim(task, rays, source, map, clearance, receivers, pattern_u, pattern_v);
         rays.active = 0;
         for (std::size_t i = 0; i < filled; ++i)
-            rays.active |= static_cast<std::uint32_t>(task.above[i]) << i;
+            rays.active |= (task.kernel[i] > 0.0f ? 1u : 0u) << i;
         // Places of the source that another polygon owns are hidden without asking.
         std::uint32_t covered = 0;
         for (const Cover& cover : source.covers)
