@@ -13,10 +13,12 @@
 #include "exitance/run/error.h"
 #include "exitance/scene/spectrum.h"
 
-namespace toml::inline v3 {
+namespace toml {
+inline namespace v3 {
 class node;
 class table;
-}  // namespace toml::inline v3
+}  // namespace v3
+}  // namespace toml
 
 namespace exitance {
 
