@@ -89,7 +89,11 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     const double size = extent(scene);
     Radiosity radiosity(scene, make_groups(scene, grouping_of(options.groups)),
                         mesh_options(options, size));
-    Shooting solver(radiosity, shooting_options(options, size));
+    ShootingOptions shooting = shooting_options(options, size);
+    shooting.interrupted = [&] {
+        return (cancel && cancel->requested()) || (options.time && clock.seconds() > *options.time);
+    };
+    Shooting solver(radiosity, shooting);
     run(solver, {options.unshot, options.time, options.next_shot, cancel}, clock,
         with_snapshots(observe, snapshots, radiosity, solver));
     if (snapshots.take) take_snapshot(snapshots, radiosity, solver);

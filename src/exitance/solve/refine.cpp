@@ -24,6 +24,7 @@ constexpr float shadow_threshold = 0.2f, smooth_threshold = 0.25f;
 constexpr float gradient_threshold = 0.5f;
 // A thorough test looks at patches and their children whatever their corners say.
 constexpr int thorough_level = 1;
+constexpr std::size_t batch_size = 1024;
 
 struct Place {
     FaceId face;
@@ -56,12 +57,19 @@ class Refinement {
             radiosity_.mesh.for_leaves(patch.root, [&](ElementId id) {
                 if (worth_testing(id)) open.push_back(id);
             });
-        while (!open.empty()) {
-            test(open);
+        // A queue, taken in batches so that memory and the time to an interruption stay bounded.
+        for (std::size_t done = 0; done < open.size();) {
+            const std::size_t end = std::min(open.size(), done + batch_size);
+            std::vector<ElementId> batch;
+            for (; done < end; ++done)
+                if (radiosity_.mesh[open[done]].leaf()) batch.push_back(open[done]);
+            test(batch);
+            if (options_.interrupted && options_.interrupted()) break;
             std::vector<ElementId> to_split;
-            for (const ElementId id : open)
+            for (const ElementId id : batch)
                 if (fails(id)) to_split.push_back(id);
-            open = split(to_split);
+            const std::vector<ElementId> children = split(to_split);
+            open.insert(open.end(), children.begin(), children.end());
         }
         return rays_;
     }

@@ -18,6 +18,7 @@ struct RefineOptions {
     /// Test every patch that gets light, not only those whose corners differ: something small may
     /// throw its shadow between them.
     bool thorough = false;
+    std::function<bool()> interrupted{};  ///< true: the mesh stays as it is so far
 };
 
 /// Lights any receivers with everything that has been shot so far, into a reset `Received`.

@@ -112,7 +112,8 @@ void Shooting::shoot_emission() {
 
 void Shooting::refine_mesh() {
     const RefineOptions options{tolerance(), static_cast<float>(options_.patch_area),
-                                static_cast<float>(options_.min_area), !refined_};
+                                static_cast<float>(options_.min_area), !refined_,
+                                options_.interrupted};
     rays_ += refine(radiosity_, options, [&](const Receivers& points, Received& lit) {
         return illuminate(points, lit);
     });

@@ -4,6 +4,7 @@
 // with the exact factor. In the terms of linear algebra this is Southwell's relaxation.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "exitance/solve/cast_light.h"
@@ -19,6 +20,8 @@ struct ShootingOptions {
     bool adaptive = true;
     bool overshoot = true;
     ColumnOptions column;
+    /// Asked during long steps: true ends a refinement where it stands.
+    std::function<bool()> interrupted{};
 };
 
 class Shooting final : public Solver {
