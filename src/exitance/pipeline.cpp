@@ -44,8 +44,6 @@ ShootingOptions shooting_options(const SolveOptions& options, double extent) {
     out.error = options.error;
     const double smallest = 0.1 * options.error * extent;
     out.min_area = options.min_area.value_or(smallest * smallest);
-    const double patch = mesh_options(options, extent).patch_size;
-    out.patch_area = patch * patch;
     out.adaptive = options.adaptive;
     out.overshoot = options.overshoot;
     out.column.factor = options.form_factor == "disk" ? PointFactor::disk : PointFactor::lambert;

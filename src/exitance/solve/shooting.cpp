@@ -111,7 +111,9 @@ void Shooting::shoot_emission() {
 }
 
 void Shooting::refine_mesh() {
-    const RefineOptions options{tolerance(), static_cast<float>(options_.patch_area),
+    // As many elements as there are patches, each wrong by the tolerance, are wrong by it together.
+    const double share = radiosity_.area() / static_cast<double>(radiosity_.mesh.patches().size());
+    const RefineOptions options{tolerance(), static_cast<float>(share),
                                 static_cast<float>(options_.min_area), !refined_,
                                 options_.interrupted};
     rays_ += refine(radiosity_, options, [&](const Receivers& points, Received& lit) {

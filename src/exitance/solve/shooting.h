@@ -14,9 +14,8 @@
 namespace exitance {
 
 struct ShootingOptions {
-    double error = 0.02;    ///< RMS error of irradiance relative to its mean to aim at
-    double min_area = 0;    ///< smallest element [m²]
-    double patch_area = 1;  ///< of a typical patch [m²]
+    double error = 0.02;  ///< RMS error of irradiance relative to its mean to aim at
+    double min_area = 0;  ///< smallest element [m²]
     bool adaptive = true;
     bool overshoot = true;
     ColumnOptions column;
