@@ -7,11 +7,11 @@ Metres; x along the fuselage, y up, z to the right; the floor is y = 0. --rows s
 of two consoles there are, --detail how finely rounded parts are divided and how many keys a
 console has. Polygons grow with rows and with the square of detail:
 
-    --rows  5 --detail 1    2 144 polygons
-    --rows 12 --detail 2   14 664 polygons
-    --rows 20 --detail 3   47 904 polygons
-    --rows 30 --detail 5  176 688 polygons
-    --rows 46 --detail 7  501 240 polygons
+    --rows  5 --detail 1    2 104 polygons
+    --rows 12 --detail 2   13 032 polygons
+    --rows 20 --detail 3   41 344 polygons
+    --rows 30 --detail 5  149 568 polygons
+    --rows 55 --detail 7  503 820 polygons
 
 Three files are written: the AFIT geometry (-o), beside it the display file, and a lighting project
 with names, light groups, cameras and a grid. Every body is closed and faces the air; corners that
@@ -247,14 +247,28 @@ def chair(cabin, x, side, detail):
                  for a in steps(across + low, across + high, detail)]
         cabin.body(extrude(attribute, rings, caps))
 
+    def link(across, half, depth, height, along_depth):
+        """A bar between two parts that it touches, so without ends."""
+        (d0, d1), (h0, h1) = depth, height
+        if along_depth:
+            rings = [[(x + across + a, h, z - side * d)
+                      for a, h in ((-half, h0), (half, h0), (half, h1), (-half, h1))]
+                     for d in (d0, d1)]
+        else:
+            rings = [[(x + across + a, h, z - side * d)
+                      for a, d in ((-half, d0), (half, d0), (half, d1), (-half, d1))]
+                     for h in (h0, h1)]
+        cabin.body(extrude("frame", rings, (False, False)))
+
     cushion("cushion", 0.0, -0.24, 0.24, (-0.23, 0.20), (0.40, 0.50))
-    cushion("cushion", 0.0, -0.23, 0.23, (0.21, 0.29), (0.48, 1.10))
+    cushion("cushion", 0.0, -0.23, 0.23, (0.21, 0.29), (0.40, 1.10))
     cushion("cushion", 0.0, -0.14, 0.14, (0.22, 0.28), (1.12, 1.26))
-    for s in (-0.29, 0.29):
+    link(0.0, 0.12, (0.20, 0.21), (0.443, 0.457), True)
+    for s in (-0.21, 0.21):
         cushion("frame", s, -0.03, 0.03, (-0.16, 0.16), (0.63, 0.67))
-        cushion("frame", s, -0.02, 0.02, (0.20, 0.24), (0.44, 0.67))
+        link(s, 0.015, (-0.02, 0.02), (0.50, 0.63), False)
     for s in (-0.10, 0.10):
-        cushion("frame", s, -0.01, 0.01, (0.24, 0.26), (1.101, 1.119))
+        link(s, 0.01, (0.245, 0.255), (1.10, 1.12), False)
 
 
 def overhead(cabin, rows, length, detail):
@@ -323,8 +337,8 @@ def write_project(path, geometry, rows, length):
                           f'group = "{"overhead" if name == "light" else "screens"}"\n')
         for name, eye, at, fov in (
                 ("aisle", (0.3, 1.65, 0), (length, 1.15, 0), 64),
-                ("operator", (middle, 1.25, 0.1), (middle, 0.85, 1.2), 70),
-                ("across", (middle - 1.6, 1.7, -0.5), (middle + 0.4, 0.8, 1.0), 60)):
+                ("operator", (middle, 1.28, 0.36), (middle, 0.9, 1.2), 70),
+                ("across", (middle - 1.3, 1.75, -0.55), (middle + 0.5, 0.85, 1.0), 65)):
             out.write(f'\n[[camera]]\nname = "{name}"\n'
                       f'eye = [{eye[0]:.6g}, {eye[1]:.6g}, {eye[2]:.6g}]\n'
                       f'look_at = [{at[0]:.6g}, {at[1]:.6g}, {at[2]:.6g}]\n'
