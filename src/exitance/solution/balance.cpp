@@ -116,21 +116,15 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
         const auto E = radiosity.emitted(face), rho = radiosity.rho(face);
         mesh.for_leaves(patch.root, [&](ElementId id) {
             const Element& element = mesh[id];
-            radiosity.reflected_exitance(id, reflected);
-            std::fill(absorbed.begin(), absorbed.end(), 0.0f);
-            for (const VertexId v : element.corners()) {
-                if (!radiosity.sends[v.index()]) continue;
-                for (std::size_t c = 0; c < columns.stride; ++c)
-                    absorbed[c] += (1.0f - rho[c]) * radiosity.irradiance[v][c] /
-                                   static_cast<float>(element.count);
-            }
+            radiosity.mean_irradiance(id, absorbed);
             for (std::size_t c = 0; c < columns.stride; ++c) {
                 shot[c] = E[c] + radiosity.shot[id][c];
-                reflected[c] -= radiosity.shot[id][c];
+                reflected[c] = rho[c] * absorbed[c] - radiosity.shot[id][c];
+                absorbed[c] *= 1.0f - rho[c];
             }
             const auto area = static_cast<double>(element.area);
             const auto open = static_cast<double>(radiosity.open_share(element));
-            out.absorbed += area * static_cast<double>(columns.luminance(absorbed));
+            out.absorbed += area * open * static_cast<double>(columns.luminance(absorbed));
             out.unshot += area * open * static_cast<double>(columns.luminance(reflected));
             const double flux = area * static_cast<double>(columns.luminance(shot));
             if (flux <= 0) return;

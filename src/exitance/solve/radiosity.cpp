@@ -137,17 +137,46 @@ float Radiosity::open_share(const Element& element) const {
     return open / static_cast<float>(element.count);
 }
 
-void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
+void Radiosity::mean_weights(ElementId leaf, std::vector<Weight>& out) const {
+    out.clear();
     const Element& element = mesh[leaf];
-    std::fill(out.begin(), out.end(), 0.0f);
-    float open = 0;
-    for (const VertexId v : element.corners()) {
-        if (!sends[v.index()]) continue;
-        for (std::size_t c = 0; c < columns.stride; ++c) out[c] += irradiance[v][c];
-        ++open;
+    const float open = open_share(element) * static_cast<float>(element.count);
+    if (open == 0) return;
+    for (const VertexId v : element.corners())
+        if (sends[v.index()]) out.push_back({v, 1.0f / open});
+    if (!element.parent.valid()) return;
+
+    const Element& parent = mesh[element.parent];
+    const auto corner = 1.0f / static_cast<float>(parent.count);
+    bool whole = open_share(parent) == 1.0f;
+    for (std::size_t c = 0; c < 4; ++c) {
+        const Element& child = mesh[ElementId(parent.first_child.index() + c)];
+        whole = whole && child.leaf() && open_share(child) == 1.0f;
     }
-    const auto reflectance = rho(mesh.face_of(element));
-    for (std::size_t c = 0; open > 0 && c < columns.stride; ++c) out[c] *= reflectance[c] / open;
+    if (!whole) return;
+    // (4 T(h/2) − T(h)) / 3 exceeds T(h/2) by (T(h/2) − T(h)) / 3, spread over the four.
+    for (std::size_t c = 0; c < 4; ++c) {
+        const Element& child = mesh[ElementId(parent.first_child.index() + c)];
+        for (const VertexId v : child.corners())
+            out.push_back({v, child.area / parent.area * corner / 3.0f});
+    }
+    for (const VertexId v : parent.corners()) out.push_back({v, -corner / 3.0f});
+}
+
+void Radiosity::mean_irradiance(ElementId leaf, std::span<float> out) const {
+    std::vector<Weight> weights;
+    mean_weights(leaf, weights);
+    std::fill(out.begin(), out.end(), 0.0f);
+    for (const Weight& w : weights) {
+        const auto H = irradiance[w.vertex];
+        for (std::size_t c = 0; c < columns.stride; ++c) out[c] += w.share * H[c];
+    }
+}
+
+void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
+    mean_irradiance(leaf, out);
+    const auto reflectance = rho(mesh.face_of(mesh[leaf]));
+    for (std::size_t c = 0; c < columns.stride; ++c) out[c] *= reflectance[c];
 }
 
 Source Radiosity::source(const Face& face, const std::array<Vec3, 4>& corners) const {

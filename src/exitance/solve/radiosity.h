@@ -62,6 +62,17 @@ class Radiosity {
 
     /// Share of an element's corners that send, which stands for the share of its area.
     float open_share(const Element& element) const;
+    /// Weights, summing to 1, that give the mean over the sending part of a leaf from vertices;
+    /// empty if none sends. Four leaves of one parent are integrated together by Richardson's rule
+    /// from theirs and the parent's corners (on a square Simpson's order of accuracy): the
+    /// trapezoidal rule alone loses light, which is concave over most surfaces.
+    struct Weight {
+        VertexId vertex;
+        float share;
+    };
+    void mean_weights(ElementId leaf, std::vector<Weight>& out) const;
+    /// Mean irradiance of the sending part of an element.
+    void mean_irradiance(ElementId leaf, std::span<float> out) const;
     /// ρ H of the sending part of an element.
     void reflected_exitance(ElementId leaf, std::span<float> out) const;
 

@@ -208,16 +208,25 @@ void Shooting::weigh_patches() {
     weight_vertex_.clear();
     weight_.clear();
     vertex_weight_.assign(mesh.vertices().size(), 0.0f);
+    std::vector<Radiosity::Weight> mean;
+    std::vector<std::pair<std::uint32_t, float>> sum;
     for (const Patch& patch : mesh.patches()) {
+        sum.clear();
         mesh.for_leaves(patch.root, [&](ElementId id) {
-            const Element& e = mesh[id];
-            for (const VertexId v : e.corners()) {
-                if (!radiosity_.sends[v.index()]) continue;
-                weight_vertex_.push_back(v.value);
-                weight_.push_back(e.area / static_cast<float>(e.count));
-                vertex_weight_[v.index()] += weight_.back();
-            }
+            const float open = radiosity_.open_share(mesh[id]) * mesh[id].area;
+            radiosity_.mean_weights(id, mean);
+            for (const Radiosity::Weight& w : mean) sum.push_back({w.vertex.value, open * w.share});
         });
+        std::stable_sort(sum.begin(), sum.end(),
+                         [](const auto& a, const auto& b) { return a.first < b.first; });
+        for (const auto& [vertex, area] : sum) {
+            if (weight_vertex_.size() == weight_begin_.back() || weight_vertex_.back() != vertex) {
+                weight_vertex_.push_back(vertex);
+                weight_.push_back(0.0f);
+            }
+            weight_.back() += area;
+            vertex_weight_[vertex] += area;
+        }
         weight_begin_.push_back(static_cast<std::uint32_t>(weight_.size()));
     }
     std::fill(shot_flux_.begin(), shot_flux_.end(), 0.0);
