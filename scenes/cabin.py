@@ -11,7 +11,7 @@ console has. Polygons grow with rows and with the square of detail:
     --rows 12 --detail 2   13 032 polygons
     --rows 20 --detail 3   41 344 polygons
     --rows 30 --detail 5  149 568 polygons
-    --rows 55 --detail 7  503 820 polygons
+    --rows 55 --detail 7  503 356 polygons
 
 Three files are written: the AFIT geometry (-o), beside it the display file, and a lighting project
 with names, light groups, cameras and a grid. Every body is closed and faces the air; corners that
