@@ -25,11 +25,15 @@ Overloaded(Cases...) -> Overloaded<Cases...>;
                                               text, range.empty() ? "a value" : range));
 }
 
+bool inside(const Option& option, double value) {
+    return std::isfinite(value) && value >= option.least && value <= option.most;
+}
+
 double parse_number(const Option& option, const std::string& text) {
     double value = 0;
     const char* end = text.data() + text.size();
     const auto [rest, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc{} || rest != end || !std::isfinite(value)) refuse(option, text);
+    if (failure != std::errc{} || rest != end || !inside(option, value)) refuse(option, text);
     return value;
 }
 
@@ -38,7 +42,8 @@ Integer parse_integer(const Option& option, const std::string& text) {
     Integer value = 0;
     const char* end = text.data() + text.size();
     const auto [rest, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc{} || rest != end) refuse(option, text);
+    if (failure != std::errc{} || rest != end || !inside(option, static_cast<double>(value)))
+        refuse(option, text);
     return value;
 }
 
@@ -53,14 +58,13 @@ const std::string& one_of_choices(const Option& option, const std::string& text)
 
 std::string Option::value_text() const {
     return std::visit(
-        Overloaded{
-            [](const bool* v) { return std::string(*v ? "true" : "false"); },
-            [](const int* v) { return std::to_string(*v); },
-            [](const std::uint64_t* v) { return std::to_string(*v); },
-            [](const double* v) { return fmt::format("{:g}", *v); },
-            [](const std::optional<double>* v) { return *v ? fmt::format("{:g}", **v) : ""; },
-            [](const std::string* v) { return *v; },
-            [](const std::optional<std::string>* v) { return v->value_or(""); }},
+        Overloaded{[](const bool* v) { return std::string(*v ? "true" : "false"); },
+                   [](const int* v) { return std::to_string(*v); },
+                   [](const std::uint64_t* v) { return std::to_string(*v); },
+                   [](const double* v) { return fmt::format("{}", *v); },
+                   [](const std::optional<double>* v) { return *v ? fmt::format("{}", **v) : ""; },
+                   [](const std::string* v) { return *v; },
+                   [](const std::optional<std::string>* v) { return v->value_or(""); }},
         target);
 }
 
@@ -77,28 +81,20 @@ std::string Option::range_text() const {
 }
 
 void Option::check(double value) const {
-    if (!std::isfinite(value) || value < least || value > most)
-        refuse(*this, fmt::format("{:g}", value));
+    if (!inside(*this, value)) refuse(*this, fmt::format("{}", value));
 }
 
 void Option::set(const std::string& text) const {
-    const auto number = [&] {
-        const double value = parse_number(*this, text);
-        check(value);
-        return value;
-    };
     const auto integer = [&]<class Integer>(Integer* v) {
-        const Integer value = parse_integer<Integer>(*this, text);
-        check(static_cast<double>(value));
-        *v = value;
+        *v = parse_integer<Integer>(*this, text);
     };
     std::visit(Overloaded{[&](bool* v) {
                               if (text != "true" && text != "false") refuse(*this, text);
                               *v = text == "true";
                           },
                           [&](int* v) { integer(v); }, [&](std::uint64_t* v) { integer(v); },
-                          [&](double* v) { *v = number(); },
-                          [&](std::optional<double>* v) { *v = number(); },
+                          [&](double* v) { *v = parse_number(*this, text); },
+                          [&](std::optional<double>* v) { *v = parse_number(*this, text); },
                           [&](std::string* v) { *v = one_of_choices(*this, text); },
                           [&](std::optional<std::string>* v) { *v = one_of_choices(*this, text); }},
                target);
