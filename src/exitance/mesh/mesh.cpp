@@ -55,32 +55,37 @@ std::optional<std::uint32_t> Mesh::corner_at(const Face& face, std::int32_t u,
     return std::nullopt;
 }
 
-std::optional<Mesh::EdgePlace> Mesh::edge_place(const Face& face, std::int32_t u,
-                                                std::int32_t v) const {
+std::optional<Mesh::Fraction> Mesh::place_on(const Face& face, std::uint32_t side, std::int32_t u,
+                                             std::int32_t v) const {
     const std::int32_t U = static_cast<std::int32_t>(face.columns) * unit;
     const std::int32_t V = static_cast<std::int32_t>(face.rows) * unit;
-    std::uint32_t side;
-    std::int32_t along, length;
-    if (v == 0) {
-        side = 0, along = u, length = U;
-    } else if (face.count == 3 && u + v == U) {
-        side = 1, along = v, length = U;
-    } else if (face.count == 3 && u == 0) {
-        side = 2, along = U - v, length = U;
-    } else if (face.count == 4 && u == U) {
-        side = 1, along = v, length = V;
-    } else if (face.count == 4 && v == V) {
-        side = 2, along = U - u, length = U;
-    } else if (face.count == 4 && u == 0) {
-        side = 3, along = V - v, length = V;
-    } else {
-        return std::nullopt;
+    const bool quad = face.count == 4;
+    std::int32_t off, along, length;  // off: 0 on the side
+    switch (side) {
+        case 0:
+            off = v, along = u, length = U;
+            break;
+        case 1:
+            off = quad ? U - u : U - u - v, along = v, length = V;
+            break;
+        case 2:
+            off = quad ? V - v : u, along = quad ? U - u : V - v, length = quad ? U : V;
+            break;
+        default:
+            off = u, along = V - v, length = V;
     }
+    if (off != 0) return std::nullopt;
     if (edges_[face.edges[side]][0] != face.corners[side]) along = length - along;
     const std::int32_t divisor = std::gcd(along, length);
-    return EdgePlace{side,
-                     {static_cast<std::uint32_t>(along / divisor),
-                      static_cast<std::uint32_t>(length / divisor)}};
+    return Fraction{static_cast<std::uint32_t>(along / divisor),
+                    static_cast<std::uint32_t>(length / divisor)};
+}
+
+std::optional<Mesh::EdgePlace> Mesh::edge_place(const Face& face, std::int32_t u,
+                                                std::int32_t v) const {
+    for (std::uint32_t side = 0; side < face.count; ++side)
+        if (const auto fraction = place_on(face, side, u, v)) return EdgePlace{side, *fraction};
+    return std::nullopt;
 }
 
 namespace {
@@ -311,21 +316,15 @@ void Mesh::between(const Element& element, std::uint32_t side, const std::vector
     const auto a = at.at[side], b = at.at[(side + 1) % at.count];
 
     // On the border of the face: whatever any face around this input edge has put there.
-    const auto edge_a = edge_place(face, a[0], a[1]), edge_b = edge_place(face, b[0], b[1]);
-    const auto middle = edge_place(face, (a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
-    if (edge_a && edge_b && middle) {
-        const std::uint32_t edge = face.edges[middle->side];
-        const bool forward = edges_[edge][0] == face.corners[middle->side];
-        // A corner of the face lies on two of its edges: find its end of this one.
-        const auto on_this = [&](const EdgePlace& place, std::array<std::int32_t, 2> where) {
-            if (place.side == middle->side) return place.fraction;
-            const auto corner = corner_at(face, where[0], where[1]);
-            return Fraction{face.corners[*corner] == edges_[edge][0] ? 0u : 1u, 1u};
-        };
-        const Fraction from = on_this(*edge_a, a), to = on_this(*edge_b, b);
+    for (std::uint32_t border = 0; border < face.count; ++border) {
+        const auto from = place_on(face, border, a[0], a[1]);
+        const auto to = place_on(face, border, b[0], b[1]);
+        if (!from || !to) continue;
+        const std::uint32_t edge = face.edges[border];
+        const bool forward = edges_[edge][0] == face.corners[border];
         const auto& places = on_edge_[edge];
-        const auto first = places.upper_bound(std::min(from, to));
-        const auto last = places.lower_bound(std::max(from, to));
+        const auto first = places.upper_bound(std::min(*from, *to));
+        const auto last = places.lower_bound(std::max(*from, *to));
         const std::size_t start = out.size();
         for (auto it = first; it != last; ++it)
             if (live[it->second.index()]) out.push_back(it->second);

@@ -171,6 +171,9 @@ class Mesh {
         Fraction fraction;   ///< along the canonical direction of the input edge
     };
 
+    /// How far along a side of the face a place is; nothing if it is not on that side.
+    std::optional<Fraction> place_on(const Face& face, std::uint32_t side, std::int32_t u,
+                                     std::int32_t v) const;
     std::optional<EdgePlace> edge_place(const Face& face, std::int32_t u, std::int32_t v) const;
     std::optional<std::uint32_t> corner_at(const Face& face, std::int32_t u, std::int32_t v) const;
     std::optional<PositionId> find_position(const Face& face, std::int32_t u, std::int32_t v) const;
