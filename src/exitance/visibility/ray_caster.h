@@ -65,7 +65,7 @@ class RayCaster {
     void closest(const RayPacket& rays, PacketHits& hits) const;
 
     /// Calls `visit(primitive, radius)` for every primitive whose bounds come within `radius` of
-    /// `point`; it returns the radius to go on with, no larger.
+    /// `point`, and for some others near it; it returns the radius to go on with, no larger.
     void visit_near(const Vec3& point, double radius,
                     const std::function<double(std::uint32_t, double)>& visit) const;
 
