@@ -110,7 +110,7 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
     std::vector<Sender> senders;
     std::vector<double> cumulative;
     double sent = 0;
-    std::vector<float> reflected(columns.stride), absorbed(columns.stride), shot(columns.stride);
+    std::vector<float> reflected(columns.stride), absorbed(columns.stride);
     for (const Patch& patch : mesh.patches()) {
         const Face& face = mesh[patch.face];
         const auto E = radiosity.emitted(face), rho = radiosity.rho(face);
@@ -118,7 +118,6 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
             const Element& element = mesh[id];
             radiosity.mean_irradiance(id, absorbed);
             for (std::size_t c = 0; c < columns.stride; ++c) {
-                shot[c] = E[c] + radiosity.shot[id][c];
                 reflected[c] = rho[c] * absorbed[c] - radiosity.shot[id][c];
                 absorbed[c] *= 1.0f - rho[c];
             }
@@ -126,11 +125,15 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
             const auto open = static_cast<double>(radiosity.open_share(element));
             out.absorbed += area * open * static_cast<double>(columns.luminance(absorbed));
             out.unshot += area * open * static_cast<double>(columns.luminance(reflected));
-            const double flux = area * static_cast<double>(columns.luminance(shot));
-            if (flux <= 0) return;
-            sent += flux;
-            senders.push_back({mesh.corners(element), element.count, face.normal, open < 1.0});
-            cumulative.push_back(sent);
+            const auto send = [&](std::span<const float> exitance, bool covered) {
+                const double flux = area * static_cast<double>(columns.luminance(exitance));
+                if (flux <= 0) return;
+                sent += flux;
+                senders.push_back({mesh.corners(element), element.count, face.normal, covered});
+                cumulative.push_back(sent);
+            };
+            send(E, false);
+            send(radiosity.shot[id], open < 1.0);
         });
     }
     if (senders.empty()) return out;

@@ -14,6 +14,7 @@ void Received::reset(std::size_t count, std::size_t stride) {
     light.assign(count, 0.0f);
     unblocked.assign(count, 0.0f);
     seen.assign(count, 1.0f);
+    variance.assign(count, 0.0f);
 }
 
 void Received::note_seen() {
@@ -54,6 +55,8 @@ struct Shot {
                 for (std::size_t c = 0; c < stride; ++c) received.rows[r * stride + c] += f * b[c];
                 received.light[r] += f * node.luminance;
                 received.unblocked[r] += factor * node.luminance;
+                const float noise = factor * node.luminance * entries[i].deviation;
+                received.variance[r] += noise * noise;
             },
             1024);
     }

@@ -18,6 +18,8 @@ struct Received {
     std::vector<float> unblocked;  ///< the luminance there would be without occlusion
     std::vector<float> seen;       ///< visible share of the lamps' light, see note_seen
 
+    std::vector<float> variance;  ///< of `light`, from sampling visibility
+
     void reset(std::size_t count, std::size_t stride);
     /// seen = light / unblocked as they stand now, 1 where there is no light.
     void note_seen();

@@ -115,6 +115,7 @@ void Radiosity::admit_new_vertices() {
     });
     irradiance.resize_rows(count);
     seen.resize(count, 1.0f);
+    variance.resize(count, 0.0f);
     reflected.resize(count, 0.0f);
     shot.resize_rows(mesh.elements().size());
 }
@@ -187,8 +188,8 @@ Source Radiosity::source(const Face& face, const std::array<Vec3, 4>& corners) c
 
 std::size_t Radiosity::bytes() const {
     return mesh.bytes() + receivers.bytes() + exposed.capacity() + irradiance.bytes() +
-           (seen.capacity() + reflected.capacity()) * sizeof(float) + sends.capacity() +
-           shot.bytes();
+           (seen.capacity() + variance.capacity() + reflected.capacity()) * sizeof(float) +
+           sends.capacity() + shot.bytes();
 }
 
 }  // namespace exitance

@@ -45,6 +45,7 @@ class Radiosity {
     std::vector<char> sends;
     VertexField irradiance;        ///< H; rows of vertices that are not exposed stay zero
     std::vector<float> seen;       ///< per vertex: visible share of the lamps' light
+    std::vector<float> variance;   ///< per vertex: of the luminance of H, from sampling visibility
     std::vector<float> reflected;  ///< per vertex: luminance of ρ H
     ElementField shot;             ///< per leaf: reflected exitance already shot
 

@@ -25,6 +25,7 @@ constexpr float gradient_threshold = 0.5f;
 // A thorough test looks at patches and their children whatever their corners say.
 constexpr int thorough_level = 1;
 constexpr std::size_t batch_size = 1024;
+constexpr float noise_deviations = 2;
 
 struct Place {
     FaceId face;
@@ -41,7 +42,7 @@ struct PlaceHash {
 
 // What is known of the shooter's light at the corners of an element.
 struct Corners {
-    float low = INFINITY, high = -INFINITY, mean = 0;
+    float low = INFINITY, high = -INFINITY, mean = 0, variance = 0;
     float least_seen = 1, most_seen = 0;
     int open = 0;
 };
@@ -91,9 +92,11 @@ class Refinement {
             out.least_seen = std::min(out.least_seen, seen);
             out.most_seen = std::max(out.most_seen, seen);
             out.mean += here;
+            out.variance += radiosity_.variance[v.index()];
             ++out.open;
         }
         if (out.open) out.mean /= static_cast<float>(out.open);
+        if (out.open) out.variance /= static_cast<float>(out.open);
         return out;
     }
 
@@ -150,23 +153,28 @@ class Refinement {
         bool covered = all.open < static_cast<int>(element.count);
         for (std::uint32_t i = 0; i < middle.count; ++i) {
             const auto [u, v] = middle.at[i];
-            float here, seen;
+            float here, seen, variance;
             bool open;
             if (const auto vertex = mesh.find_vertex(mesh[face_id], u, v)) {
                 here = light(*vertex);
                 seen = radiosity_.seen[vertex->index()];
+                variance = radiosity_.variance[vertex->index()];
                 open = radiosity_.exposed[vertex->index()];
             } else {
                 const std::uint32_t at = places_.at({face_id, u, v});
                 here = radiosity_.columns.luminance(lit_.row(at, stride));
                 seen = lit_.seen[at], open = open_[at];
+                variance = lit_.variance[at];
             }
             if (!open) {
                 covered = true;
                 continue;
             }
             least_seen = std::min(least_seen, seen), most_seen = std::max(most_seen, seen);
-            departure = std::max(departure, std::abs(here - expected(element, i, all.mean)));
+            // What sampling noise explains is no reason to split.
+            const float noise = noise_deviations * std::sqrt(variance + 0.5f * all.variance);
+            const float found = std::abs(here - expected(element, i, all.mean));
+            departure = std::max(departure, found - noise);
         }
         // An object stands on the element: only small elements may be half covered.
         if (covered && all.high > tolerance(element)) return true;
@@ -230,6 +238,7 @@ class Refinement {
 
     void take(std::uint32_t from, VertexId vertex) {
         radiosity_.seen[vertex.index()] = lit_.seen[from];
+        radiosity_.variance[vertex.index()] = lit_.variance[from];
         if (radiosity_.exposed[vertex.index()])
             radiosity_.receive(vertex, lit_.row(from, radiosity_.columns.stride));
     }

@@ -181,6 +181,7 @@ void Shooting::deliver(const Received& received) {
                 if (!radiosity_.exposed[v] || received.unblocked[v] == 0) continue;
                 const auto row = received.row(v, stride);
                 radiosity_.receive(VertexId(v), row);
+                radiosity_.variance[v] += received.variance[v];
                 add_flux(v, row, total, block.reflected);
             }
             block.received = static_cast<double>(radiosity_.columns.luminance(total));

@@ -47,7 +47,7 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
         alignas(64) std::array<float, ReceiverBlock::capacity> factors;
         point_polygon_factors(block, source, static_cast<float>(caster.clearance()),
                               factors.data());
-        for (std::size_t r = 0; r < block.size; ++r) entries[begin + r] = {factors[r], 1.0f};
+        for (std::size_t r = 0; r < block.size; ++r) entries[begin + r] = {factors[r], 1.0f, 0.0f};
         const bool disk = options.factor == PointFactor::disk;
         if (!options.occlusion && !disk) return;
 
@@ -63,6 +63,7 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
             if (!budget.probe[r]) continue;
             ColumnEntry& entry = entries[begin + r];
             entry.visible = seen.fraction[r];
+            entry.deviation = seen.deviation[r];
             if (disk && seen.fraction[r] > 0) entry.factor = seen.disk[r] / seen.fraction[r];
         }
         rays.fetch_add(seen.rays, std::memory_order_relaxed);

@@ -24,8 +24,9 @@ struct ColumnOptions {
 
 /// Per receiver.
 struct ColumnEntry {
-    float factor = 0;   ///< form factor receiver → source, unobstructed
-    float visible = 1;  ///< the visible share of it; 1 where the factor is 0
+    float factor = 0;     ///< form factor receiver → source, unobstructed
+    float visible = 1;    ///< the visible share of it; 1 where the factor is 0
+    float deviation = 0;  ///< standard deviation to expect of `visible`
     float received() const { return factor * visible; }
 };
 

@@ -216,6 +216,9 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
         // No sample above the horizon: a sliver that nothing was found to hide.
         out.fraction[r] = sum.kernel > 0 ? sum.seen / sum.kernel : 1.0f;
         out.disk[r] = sum.samples ? sum.disk / static_cast<float>(sum.samples) : 0.0f;
+        const bool partly = sum.any_seen && sum.any_hidden;
+        const float root = partly ? std::sqrt(std::sqrt(static_cast<float>(sum.samples))) : 1.0f;
+        out.deviation[r] = partly ? 0.5f / (root * root * root) : 0.0f;
     }
 }
 

@@ -23,6 +23,9 @@ struct VisibleFractions {
     std::array<float, ReceiverBlock::capacity> fraction;
     /// (1/n) Σ V A cosθ₁ cosθ₂ / (π r² + A/n): Wallace et al. 1989, eq. 9, over the same samples.
     std::array<float, ReceiverBlock::capacity> disk;
+    /// Standard deviation to expect of `fraction`: n^-3/4 / 2 for n stratified samples of a source
+    /// that is partly hidden, 0 where all samples agreed.
+    std::array<float, ReceiverBlock::capacity> deviation;
     std::uint64_t rays = 0;
 };
 
