@@ -14,21 +14,21 @@ PROGRAM = os.environ.get("EXITANCE_PROGRAM", str(ROOT / "build/bin/exitance"))
 WRONG_USE, BAD_INPUT, COULD_NOT_FINISH = 2, 3, 4
 
 
-def box(corners=((0, 0, 0), (1, 1, 1)), lamp=True):
-    """AFIT geometry: a closed box seen from inside, grey 0.5, and a lamp 5 cm below the ceiling."""
-    (x0, y0, z0), (x1, y1, z1) = corners
-    points = [(x, y, z) for x in (x0, x1) for y in (y0, y1) for z in (z0, z1)]
+def box(lamp=True, patches=1):
+    """AFIT geometry: a closed box of 1 m seen from inside, grey 0.5, each wall in so many patches,
+    and a lamp of 0.2 m, 5 cm below the ceiling."""
+    points = [(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
     # Corner i = 4 x + 2 y + z; counter-clockwise seen from inside.
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     polygons = [[i + 1 for i in face] + [1] for face in faces]
     if lamp:
-        y = y1 - 0.05
+        y = 0.95
         first = len(points) + 1
         points += [(0.4, y, 0.4), (0.6, y, 0.4), (0.6, y, 0.6), (0.4, y, 0.6)]
         polygons.append([first, first + 1, first + 2, first + 3, 2])
     lines = ["a box", "ccw nopurge", f"points {len(points)} patches {len(polygons)} attributes 2"]
     lines += [f"{x} {y} {z}" for x, y, z in points]
-    lines += [f"4 {a} {b} {c} {d} attribute {k} patch 1" for a, b, c, d, k in polygons]
+    lines += [f"4 {a} {b} {c} {d} attribute {k} patch {patches}" for a, b, c, d, k in polygons]
     lines += ["color 0.5 0.5 0.5", "color 0.5 0.5 0.5 emit 10 10 10"]
     return "\n".join(lines) + "\n"
 

@@ -13,8 +13,8 @@ from program import (BAD_INPUT, COULD_NOT_FINISH, PROGRAM, WRONG_USE, ProgramTes
                      glb_json)
 
 QUICK = ("--error", "0.2")
-# Thousands of shots, each a matter of milliseconds.
-LONG = ("--unshot", "0", "--no-adaptive", "--patch-size", "0.02")
+LONG = ("--unshot", "0", "--no-adaptive")
+SHOTS_OF_LONG = 2500  # at least: each of so many patches once, a matter of milliseconds each
 
 
 class Solve(ProgramTest):
@@ -95,6 +95,7 @@ class Solve(ProgramTest):
         self.assertNotEqual(files[0], files[1])
 
     def test_interrupt_keeps_what_is_solved(self):
+        self.write("box.geom", box(patches=SHOTS_OF_LONG // 6))
         for number in (signal.SIGINT, signal.SIGTERM):
             with self.subTest(signal=number):
                 process = self.start("solve", self.scene, "-o", self.output, *LONG, "--log", "json")
@@ -109,6 +110,7 @@ class Solve(ProgramTest):
                 self.output.unlink()
 
     def test_time_limit(self):
+        self.write("box.geom", box(patches=SHOTS_OF_LONG // 6))
         done = self.solve(*LONG, "--time", "0.5", "--log", "json")
         last = json.loads(done.stderr.splitlines()[-1])
         self.assertLess(last["seconds"], 10)  # a shot and the bookkeeping after it, amply
@@ -183,7 +185,8 @@ class Solve(ProgramTest):
         self.refuse(WRONG_USE, "would replace the input", "solve", self.output, "-o", self.output)
 
     def test_refused_before_the_work(self):
-        # At this error the solve would take minutes.
+        # The work would not end before the test's patience does.
+        self.write("box.geom", box(patches=SHOTS_OF_LONG // 6))
         self.refuse(COULD_NOT_FINISH, "cannot write", "solve", self.scene, "-o", "nowhere/x.glb",
                     *LONG)
 
@@ -195,14 +198,15 @@ class Solve(ProgramTest):
         self.assertEqual(self.output.read_bytes(), before)
 
     def test_out_of_memory(self):
-        # The program alone maps some hundred MB; the solve is what does not fit.
         import resource
 
         def little_memory():
             resource.setrlimit(resource.RLIMIT_DATA, (300 << 20, 300 << 20))
 
-        self.refuse(COULD_NOT_FINISH, "memory", "solve", self.scene, "-o", self.output, "--error",
-                    "0.0001", "--min-area", "1e-12", preexec_fn=little_memory)
+        # Seven million patches, above 100 bytes each with their elements and vertices.
+        self.write("box.geom", box(patches=1000000))
+        self.refuse(COULD_NOT_FINISH, "memory", "solve", self.scene, "-o", self.output,
+                    preexec_fn=little_memory)
 
     def test_unlit_scene(self):
         dark = self.write("dark.geom", box(lamp=False))
