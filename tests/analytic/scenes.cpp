@@ -271,6 +271,7 @@ Case two_plates() {
 Case parallel_plates() {
     Case c;
     c.name = "parallel_plates";
+    c.error = 0.005;  // the lamp is so near that its edge is nearly a step
     add_polygon(c.scene, add_surface(c.scene, "lamp", diffuse(0, 100)),
                 {{0, 0, 0.3}, {0, 1, 0.3}, {2, 1, 0.3}, {2, 0, 0.3}});
     add_polygon(c.scene, add_surface(c.scene, "floor", diffuse(0.5, 0)),

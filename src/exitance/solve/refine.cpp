@@ -25,7 +25,7 @@ constexpr float gradient_threshold = 0.5f;
 // A thorough test looks at patches and their children whatever their corners say.
 constexpr int thorough_level = 1;
 constexpr std::size_t batch_size = 1024;
-constexpr float noise_deviations = 2;
+constexpr float noise_deviations = 1;
 
 struct Place {
     FaceId face;

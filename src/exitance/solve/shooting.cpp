@@ -295,10 +295,12 @@ double Shooting::unshot() const {
 }
 
 double Shooting::enough() const {
-    // Unshot flux u adds u / (1-ρ) / A to the irradiance in the end.
+    // Unshot flux u adds u / (1-ρ) / A to the irradiance in the end, most in the band that is
+    // reflected most.
+    const double rho = *std::max_element(rho_area_.begin(), rho_area_.end()) / radiosity_.area();
     if (radiosity_.emitted_flux() <= 0) return 0.0;
-    return unshot_share * options_.error * mean_irradiance_ * radiosity_.area() *
-           (1.0 - radiosity_.mean_reflectance()) / radiosity_.emitted_flux();
+    return unshot_share * options_.error * mean_irradiance_ * radiosity_.area() * (1.0 - rho) /
+           radiosity_.emitted_flux();
 }
 
 double Shooting::next_shot() const {
