@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "exitance/math/polygon.h"
@@ -18,6 +19,8 @@ constexpr double unshot_share = 0.15;
 // The mesh is refined for all the light when this many times what may stay unshot is left: by then
 // its pattern stands, and what the refinement changes is shot together with the rest.
 constexpr double refine_at = 4;
+// Relative error of sums in float, per root of their number of terms.
+constexpr float sum_rounding = 4 * std::numeric_limits<float>::epsilon();
 
 }  // namespace
 
@@ -79,6 +82,10 @@ Shooting::Brightest Shooting::brightest() const {
     Brightest best;
     for (std::size_t p = 0; p < patch_unshot_.size(); ++p) {
         const float moved = std::abs(patch_unshot_[p] + spread * patch_rho_[p]);
+        // What a patch has received and shot are sums in float: below their rounding nothing is
+        // left.
+        const auto terms = static_cast<float>(weight_begin_[p + 1] - weight_begin_[p]);
+        if (moved <= sum_rounding * (4 + std::sqrt(terms)) * std::abs(patch_shot_[p])) continue;
         if (moved > best.moved) best = {p, moved};
     }
     return best;
