@@ -110,10 +110,10 @@ Case furnished_box() {
     c.probes.push_back({{0.3, 0.35, 0.001}, {-1, 0, 0}, half_irradiance});
     c.probes.push_back({{0.295, 0.35, 0}, {0, 0, 1}, half_irradiance});
     c.probes.push_back({{0.9, 0.7, 0.05}, {-1, 0, 0}, half_irradiance});
-    c.tolerance = 0.03;
+    c.tolerance = 0.03, c.error = 0.02, c.imbalance = 0.01;
     c.why =
         "blocks of the same E and rho on the floor change nothing, contacts included; "
-        "1 % RMS is asked for, and 30 places lie within three times that";
+        "2 % RMS is asked for, and 30 places lie within 3 %";
     return c;
 }
 
@@ -127,10 +127,10 @@ Case sheet_in_a_box() {
         c.probes.push_back({{0.5, 0.5, 0.55}, normal, half_irradiance});
         c.probes.push_back({{0.203, 0.65, 0.5005}, normal, half_irradiance});
     }
-    c.tolerance = 0.03;
+    c.tolerance = 0.03, c.error = 0.02, c.imbalance = 0.01;
     c.why =
-        "a two-sided sheet of the same E and rho on both sides changes nothing; 1 % RMS is "
-        "asked for, and 28 places lie within three times that";
+        "a two-sided sheet of the same E and rho on both sides changes nothing; 2 % RMS is "
+        "asked for, and 28 places lie within 3 %";
     return c;
 }
 

@@ -16,8 +16,8 @@ namespace {
 
 // Stratified samples of a penumbra miss by about n^-3/4 / 2 of the contribution c (in units of the
 // tolerance): n = (2 c)^4/3 brings that to a quarter of the tolerance. Fainter sources get one ray:
-// their errors are independent and average out over the many of them. A quarter of the rays, at
-// most 16, find out whether there is a penumbra at all.
+// their errors are independent and average out over the many of them. Half of the rays, at most 64,
+// find out whether there is a penumbra at all: what hides a tenth of the source must not be missed.
 RayBudget budget_for(const float* factors, std::size_t size, float brightness) {
     RayBudget budget;
     for (std::size_t r = 0; r < size; ++r) {
@@ -27,7 +27,7 @@ RayBudget budget_for(const float* factors, std::size_t size, float brightness) {
         const float most = std::clamp(wanted, 1.0f, 256.0f);
         budget.most[r] = static_cast<std::uint16_t>(most);
         budget.probe[r] = factors[r] > 0.0f
-                              ? static_cast<std::uint8_t>(std::clamp(most / 4.0f, 1.0f, 16.0f))
+                              ? static_cast<std::uint8_t>(std::clamp(most / 2.0f, 1.0f, 64.0f))
                               : std::uint8_t{0};
     }
     return budget;
