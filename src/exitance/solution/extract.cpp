@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <tsl/robin_map.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -61,25 +62,40 @@ class Extraction {
     }
 
     // Irradiance of vertices that lie under other objects: from the exposed corners next to them,
-    // so that no dark fringe surrounds what stands on a surface.
+    // ring by ring, so that no dark fringe surrounds what stands on a surface.
     void fill_buried() {
-        const std::size_t stride = radiosity_.columns.stride;
-        buried_.assign(mesh_.vertices().size() * (any_buried() ? stride : 0), 0.0f);
-        if (buried_.empty()) return;
-        std::vector<std::uint32_t> count(mesh_.vertices().size(), 0);
-        for (const ElementId leaf : leaves_)
-            for (const VertexId v : mesh_[leaf].corners()) {
-                if (radiosity_.exposed[v.index()]) continue;
-                for (const VertexId w : mesh_[leaf].corners()) {
-                    if (!radiosity_.exposed[w.index()]) continue;
-                    ++count[v.index()];
-                    for (std::size_t c = 0; c < stride; ++c)
-                        buried_[v.index() * stride + c] += radiosity_.irradiance[w][c];
-                }
+        if (!any_buried()) return;
+        const std::size_t stride = radiosity_.columns.stride, count = mesh_.vertices().size();
+        buried_.assign(count * stride, 0.0f);
+        std::vector<char> known = radiosity_.exposed;
+        std::vector<ElementId> open = leaves_;
+        for (bool found = true; found;) {
+            std::vector<std::uint32_t> neighbours(count, 0);
+            std::vector<ElementId> rest;
+            for (const ElementId leaf : open) {
+                const auto corners = mesh_[leaf].corners();
+                const auto is_known = [&](VertexId v) { return known[v.index()] != 0; };
+                if (std::all_of(corners.begin(), corners.end(), is_known)) continue;
+                rest.push_back(leaf);
+                for (const VertexId v : corners)
+                    for (const VertexId w : corners) {
+                        if (is_known(v) || !is_known(w)) continue;
+                        ++neighbours[v.index()];
+                        const auto H = light(w);
+                        for (std::size_t c = 0; c < stride; ++c)
+                            buried_[v.index() * stride + c] += H[c];
+                    }
             }
-        for (std::size_t v = 0; v < count.size(); ++v)
-            for (std::size_t c = 0; count[v] > 0 && c < stride; ++c)
-                buried_[v * stride + c] /= static_cast<float>(count[v]);
+            found = false;
+            for (std::size_t v = 0; v < count; ++v) {
+                if (neighbours[v] == 0) continue;
+                for (std::size_t c = 0; c < stride; ++c)
+                    buried_[v * stride + c] /= static_cast<float>(neighbours[v]);
+                known[v] = 1;
+                found = true;
+            }
+            open = std::move(rest);
+        }
     }
 
     bool any_buried() const {

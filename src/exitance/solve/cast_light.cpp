@@ -27,6 +27,9 @@ namespace {
 // A node may stand for its descendants while that shifts irradiance by less than this share of the
 // tolerance.
 constexpr float node_share = 0.05f;
+// Nor may a receiver be so near that the node fills this much of its view: samples spread over the
+// node's area would say little of the part right before it, which weighs most.
+constexpr float near_factor = 0.5f;
 
 struct Shot {
     const RayCaster& caster;
@@ -68,15 +71,14 @@ struct Shot {
         const float dy = receivers.y[r] - 0.5f * (a.y + c.y);
         const float dz = receivers.z[r] - 0.5f * (a.z + c.z);
         const float square = dx * dx + dy * dy + dz * dz;
-        const float factor =
-            std::min(1.0f, node.source.area / (std::numbers::pi_v<float> * square + 1e-30f));
-        return node.spread * factor > node_share * tolerance;
+        const float factor = node.source.area / (std::numbers::pi_v<float> * square + 1e-30f);
+        return factor > near_factor ||
+               node.spread * std::min(1.0f, factor) > node_share * tolerance;
     }
 
     void visit(std::size_t at, std::span<const std::uint32_t> which) {
         const LightSource::Node& node = source.nodes[at];
-        if (node.first_child == 0 || node.spread <= node_share * tolerance)
-            return cast_node(at, which);
+        if (node.first_child == 0) return cast_node(at, which);
         std::vector<std::uint32_t> near, far;
         for (const std::uint32_t r : which) (needs_children(node, r) ? near : far).push_back(r);
         if (!far.empty()) cast_node(at, far);

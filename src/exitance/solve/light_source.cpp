@@ -4,12 +4,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/run/random.h"
+
 namespace exitance {
 
 namespace {
 
 // Polygons' own numbers follow those of elements.
 constexpr std::uint32_t first_face_number = 0x80000000u;
+// A face that emits is divided this often for receivers near to it.
+constexpr int emission_depth = 3;
+
+using Quarters = std::array<std::array<Vec3, 4>, 4>;
+
+Quarters quarters_of_quad(const std::array<Vec3, 4>& c) {
+    const Vec3 a = (c[0] + c[1]) * 0.5, b = (c[1] + c[2]) * 0.5, d = (c[2] + c[3]) * 0.5,
+               e = (c[3] + c[0]) * 0.5, m = (a + d) * 0.5;
+    return {{{c[0], a, m, e}, {a, c[1], b, m}, {m, b, c[2], d}, {e, m, d, c[3]}}};
+}
+
+Quarters quarters_of_triangle(const std::array<Vec3, 4>& c) {
+    const Vec3 a = (c[0] + c[1]) * 0.5, b = (c[1] + c[2]) * 0.5, d = (c[2] + c[0]) * 0.5;
+    return {{{c[0], a, d, {}}, {a, c[1], b, {}}, {d, b, c[2], {}}, {a, b, d, {}}}};
+}
 
 /// Builds the tree of a patch from the exitance of its leaves, which `leaf(id, row)` fills in.
 template <class Leaf>
@@ -82,10 +99,24 @@ LightSource emission_of(const Radiosity& radiosity, FaceId id) {
     const Face& face = radiosity.mesh[id];
     const auto E = radiosity.emitted(face);
     LightSource out;
-    const Source source = radiosity.source(face, radiosity.mesh.corners(face));
-    out.nodes.push_back({source, source.area, first_face_number | id.value, 0,
-                         radiosity.columns.luminance(E), 0.0f});
-    out.exitance.assign(E.begin(), E.end());
+    const auto append = [&](const std::array<Vec3, 4>& corners, std::uint32_t number) {
+        const Source source = radiosity.source(face, corners);
+        out.nodes.push_back({source, source.area, number, 0, radiosity.columns.luminance(E), 0.0f});
+        out.exitance.insert(out.exitance.end(), E.begin(), E.end());
+    };
+    const auto divide = [&](const auto& self, std::size_t at, const std::array<Vec3, 4>& c,
+                            int depth) -> void {
+        if (depth == 0) return;
+        const std::size_t first = out.nodes.size();
+        out.nodes[at].first_child = static_cast<std::uint32_t>(first);
+        const auto quarters = face.count == 4 ? quarters_of_quad(c) : quarters_of_triangle(c);
+        for (std::uint32_t k = 0; k < 4; ++k)
+            append(quarters[k], static_cast<std::uint32_t>(hash_bits(out.nodes[at].number, k + 1)));
+        for (std::size_t k = 0; k < 4; ++k) self(self, first + k, quarters[k], depth - 1);
+    };
+    const auto corners = radiosity.mesh.corners(face);
+    append(corners, first_face_number | id.value);
+    divide(divide, 0, corners, emission_depth);
     return out;
 }
 

@@ -105,7 +105,8 @@ class Refinement {
         if (element.area <= options_.min_area || element.level >= Mesh::max_level) return false;
         if (!radiosity_.reflects(radiosity_.mesh.face_of(element))) return false;
         const Corners c = corners_of(element);
-        if (c.open == 0) return false;
+        // Covered at all corners, perhaps by different objects with light between them.
+        if (c.open == 0) return options_.thorough && element.level <= thorough_level;
         const float allowed = tolerance(element);
         if (options_.thorough && element.level <= thorough_level && c.high > allowed) return true;
         const bool shadow = c.most_seen - c.least_seen > shadow_difference;
@@ -150,7 +151,7 @@ class Refinement {
         const Corners all = corners_of(element);
         const std::size_t stride = radiosity_.columns.stride;
         float departure = 0, least_seen = all.least_seen, most_seen = all.most_seen;
-        bool covered = all.open < static_cast<int>(element.count);
+        bool covered = all.open < static_cast<int>(element.count), any_open = false;
         for (std::uint32_t i = 0; i < middle.count; ++i) {
             const auto [u, v] = middle.at[i];
             float here, seen, variance;
@@ -170,12 +171,14 @@ class Refinement {
                 covered = true;
                 continue;
             }
+            any_open = true;
             least_seen = std::min(least_seen, seen), most_seen = std::max(most_seen, seen);
             // What sampling noise explains is no reason to split.
             const float noise = noise_deviations * std::sqrt(variance + 0.5f * all.variance);
             const float found = std::abs(here - expected(element, i, all.mean));
             departure = std::max(departure, found - noise);
         }
+        if (all.open == 0) return any_open;
         // An object stands on the element: only small elements may be half covered.
         if (covered && all.high > tolerance(element)) return true;
         const bool shadow = most_seen - least_seen > shadow_difference;
