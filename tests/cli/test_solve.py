@@ -203,8 +203,8 @@ class Solve(ProgramTest):
         def little_memory():
             resource.setrlimit(resource.RLIMIT_DATA, (300 << 20, 300 << 20))
 
-        # Seven million patches, above 100 bytes each with their elements and vertices.
-        self.write("box.geom", box(patches=1000000))
+        # Nearly two million patches, above 200 bytes each with their elements and vertices.
+        self.write("box.geom", box(patches=250000))
         self.refuse(COULD_NOT_FINISH, "memory", "solve", self.scene, "-o", self.output,
                     preexec_fn=little_memory)
 

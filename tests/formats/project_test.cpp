@@ -350,8 +350,8 @@ TEST(Project, ErrorsNameThePlaceAndWhatWasExpected) {
     refused("match = \"pai*\"", "name = \"paint\"", "16:8", "already a material");
     refused("match = \"pai*\"\n", "", "15:1", "neither 'match' nor 'name'");
     refused("material = \"paint\"", "material = \"pant\"", "21:12", "did you mean 'paint'?");
-    refused("patches = 4", "patches = 0", "22:11", "a whole number from 1 to 1000000");
-    refused("patches = 4", "patches = 4000000000", "22:11", "a whole number from 1 to 1000000");
+    refused("patches = 4", "patches = 0", "22:11", "a whole number from 1 to 250000");
+    refused("patches = 4", "patches = 4000000000", "22:11", "a whole number from 1 to 250000");
     refused("patches = 4", "patches = 1.5", "22:11", "a whole number");
     refused("[1, 0, 1], [1, 0, 0]]", "[1, 0, 0], [0, 0, 0], [1, 1, 1]]", "23:11",
             "found 5 corners");

@@ -52,6 +52,20 @@ TEST(Patches, AreAsSquareAsTheirNumberAllows) {
     EXPECT_EQ(mesh.faces()[0].rows, 2u);
 }
 
+TEST(Patches, AsManyInARowAsAFileMayAskFor) {
+    constexpr std::uint32_t prime = 249'989;  // the largest that scene/formats/limits.h allows
+    Scene scene;
+    add_polygon(scene, add_surface(scene, "s"), square).patches = prime;
+    Mesh mesh = mesh_of(scene);
+    ASSERT_EQ(mesh.patches().size(), prime);
+    const ElementId last = mesh.patches().back().root;
+    EXPECT_GT(mesh[last].u + mesh[last].v, 1 << 29);
+    EXPECT_FALSE(mesh.split(last).empty());
+    std::vector<PositionId> none;
+    mesh.between(mesh[last], 0, std::vector<char>(mesh.positions().size(), 0), none);
+    EXPECT_TRUE(none.empty());
+}
+
 TEST(Patches, BySizeWhereTheFileDoesNotSay) {
     EXPECT_EQ(patches_of_one(square, 0, {0.5, true}), 4u);
     EXPECT_EQ(patches_of_one(square, 0, {0.49, true}), 9u);

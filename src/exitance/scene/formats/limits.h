@@ -12,8 +12,9 @@ inline constexpr double coordinate = 1e9;
 inline constexpr double length = 1e-9;
 /// Emitted exitance per band; well inside float after multiplication by areas.
 inline constexpr double exitance = 1e20;
-/// Shooting patches of one polygon.
-inline constexpr std::uint32_t patches = 1'000'000;
+/// Shooting patches of one polygon. A prime number of them stands in one row, and places in it are
+/// 32-bit multiples of 2^-12 patches, of which two are added.
+inline constexpr std::uint32_t patches = 250'000;
 /// Points, and polygons, of one scene.
 inline constexpr std::uint32_t elements = 1U << 27;
 
