@@ -102,7 +102,7 @@ std::vector<Face> faces_of(const Scene& scene) {
 }
 
 // Faces that have the same corners, in any order. Returns those that are there once.
-std::vector<Face> take_duplicates(std::vector<Face> faces, FaceOverlaps& found) {
+std::vector<Face> take_duplicates(const std::vector<Face>& faces, FaceOverlaps& found) {
     const auto key_of = [](const Face& face) {
         std::array<std::uint64_t, 4> corners{};
         for (std::uint32_t c = 0; c < face.size; ++c) {
@@ -219,7 +219,7 @@ class PlaneGrid {
         for (std::int64_t i = x.first; i <= x.last; ++i)
             for (std::int64_t j = y.first; j <= y.last; ++j)
                 for (std::int64_t k = z.first; k <= z.last; ++k)
-                    visit(hash_bits(static_cast<std::uint64_t>(level + 1024), i, j, k));
+                    visit(hash_bits(static_cast<std::uint64_t>(level) + 1024, i, j, k));
     }
 
     double plane_edge_;
