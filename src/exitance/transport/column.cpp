@@ -52,11 +52,13 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
         if (!options.occlusion && !disk) return;
 
         RayBudget budget = budget_for(factors.data(), block.size, brightness);
-        if (disk)
-            for (std::size_t r = 0; r < block.size; ++r)
-                if (budget.probe[r])
-                    budget.probe[r] = static_cast<std::uint8_t>(
-                        std::min<std::uint16_t>(budget.most[r], std::uint16_t{255}));
+        // A disc stands for its share of the source only from afar: near sources need more of them.
+        for (std::size_t r = 0; disk && r < block.size; ++r) {
+            if (!budget.probe[r]) continue;
+            const auto discs = std::max<float>(budget.most[r], std::ceil(64.0f * factors[r]));
+            budget.most[r] = static_cast<std::uint16_t>(std::min(discs, 255.0f));
+            budget.probe[r] = static_cast<std::uint8_t>(budget.most[r]);
+        }
         VisibleFractions seen;
         find_visible_fractions(caster, source, block, budget, options.occlusion, seed, seen);
         for (std::size_t r = 0; r < block.size; ++r) {
