@@ -3,6 +3,8 @@
 
 #include <sys/resource.h>
 
+#include <fstream>
+
 #include "exitance/pipeline.h"
 #include "exitance/run/error.h"
 
@@ -12,12 +14,6 @@ namespace {
 
 double seconds(const timeval& time) {
     return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-rusage used() {
-    rusage out{};
-    getrusage(RUSAGE_SELF, &out);
-    return out;
 }
 
 }  // namespace
@@ -39,12 +35,17 @@ Request::Request(int argc, const char* const* argv) {
 }
 
 double cpu_seconds() {
-    const rusage now = used();
+    rusage now{};
+    getrusage(RUSAGE_SELF, &now);
     return seconds(now.ru_utime) + seconds(now.ru_stime);
 }
 
+// Not ru_maxrss, which begins with what the process held that started this one.
 double peak_resident_bytes() {
-    return 1024.0 * static_cast<double>(used().ru_maxrss);
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("VmHWM:")) return 1024.0 * std::stod(line.substr(6));
+    throw Error(Fault::could_not_finish, "/proc/self/status does not say VmHWM");
 }
 
 Cost measure_solve(const Scene& scene, const Request& request) {
