@@ -55,7 +55,7 @@ ShootingOptions shooting_options(const SolveOptions& options, double extent) {
 void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const Shooting& solver) {
     Solution so_far = extract_solution(radiosity);
     if (snapshots.ambient) {
-        const std::vector<float> ambient = solver.ambient_per_column();
+        const std::vector<float> ambient = solver.ambient();
         for (std::size_t v = 0; v < so_far.irradiance.rows(); ++v) {
             const auto row = so_far.irradiance[VertexId(v)];
             for (std::size_t c = 0; c < so_far.columns(); ++c) row[c] += ambient[c];

@@ -45,8 +45,8 @@ struct Shot {
     void cast_node(std::size_t at, std::span<const std::uint32_t> which) {
         const LightSource::Node& node = source.nodes[at];
         entries.resize(which.size());
-        rays += compute_column(caster, node.source, std::abs(node.luminance) / tolerance,
-                               node.number, receivers, which, options, entries);
+        rays += compute_column(caster, node.source, node.magnitude / tolerance, node.number,
+                               receivers, which, options, entries);
         const auto b = source.row(at, stride);
         parallel_for(
             which.size(),
@@ -58,7 +58,7 @@ struct Shot {
                 for (std::size_t c = 0; c < stride; ++c) received.rows[r * stride + c] += f * b[c];
                 received.light[r] += f * node.luminance;
                 received.unblocked[r] += factor * node.luminance;
-                const float noise = factor * node.luminance * entries[i].deviation;
+                const float noise = factor * node.magnitude * entries[i].deviation;
                 received.variance[r] += noise * noise;
             },
             1024);

@@ -33,7 +33,7 @@ template <class Leaf>
 class Collector {
   public:
     Collector(const Radiosity& radiosity, LightSource& out, const Leaf& leaf)
-        : radiosity_(radiosity), out_(out), leaf_(leaf) {}
+        : radiosity_(radiosity), out_(out), leaf_(leaf), difference_(radiosity.columns.stride) {}
 
     // Fills node `at`; exitances go up as area-weighted means.
     void visit(std::size_t at, ElementId id) {
@@ -61,12 +61,16 @@ class Collector {
             out_.nodes[at].first_child = static_cast<std::uint32_t>(first);
         }
         LightSource::Node& node = out_.nodes[at];
-        node.luminance = radiosity_.columns.luminance(out_.row(at, stride));
+        const auto row = out_.row(at, stride);
+        node.luminance = radiosity_.columns.luminance(row);
+        node.magnitude = radiosity_.columns.magnitude(row);
         if (node.first_child != 0)
             for (std::size_t k = 0; k < 4; ++k) {
                 const LightSource::Node& child = out_.nodes[node.first_child + k];
-                node.spread = std::max(node.spread,
-                                       std::abs(child.luminance - node.luminance) + child.spread);
+                const auto child_row = out_.row(node.first_child + k, stride);
+                for (std::size_t c = 0; c < stride; ++c) difference_[c] = child_row[c] - row[c];
+                node.spread =
+                    std::max(node.spread, radiosity_.columns.magnitude(difference_) + child.spread);
             }
     }
 
@@ -74,7 +78,7 @@ class Collector {
         const Element& element = radiosity_.mesh[id];
         out_.nodes.push_back(
             {Source(radiosity_.mesh.corners(element), element.count, radiosity_.caster.middle()),
-             0.0f, id.value, 0, 0.0f, 0.0f});
+             0.0f, id.value, 0, 0.0f, 0.0f, 0.0f});
         out_.exitance.resize(out_.nodes.size() * radiosity_.columns.stride, 0.0f);
     }
 
@@ -82,6 +86,7 @@ class Collector {
     const Radiosity& radiosity_;
     LightSource& out_;
     const Leaf& leaf_;
+    std::vector<float> difference_;
 };
 
 template <class Leaf>
@@ -101,7 +106,8 @@ LightSource emission_of(const Radiosity& radiosity, FaceId id) {
     LightSource out;
     const auto append = [&](const std::array<Vec3, 4>& corners, std::uint32_t number) {
         const Source source = radiosity.source(face, corners);
-        out.nodes.push_back({source, source.area, number, 0, radiosity.columns.luminance(E), 0.0f});
+        const float level = radiosity.columns.luminance(E);
+        out.nodes.push_back({source, source.area, number, 0, level, level, 0.0f});
         out.exitance.insert(out.exitance.end(), E.begin(), E.end());
     };
     const auto divide = [&](const auto& self, std::size_t at, const std::array<Vec3, 4>& c,

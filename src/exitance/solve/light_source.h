@@ -22,7 +22,8 @@ struct LightSource {
         std::uint32_t number = 0;       ///< decorrelates the samples
         std::uint32_t first_child = 0;  ///< four nodes in a row; 0 = none
         float luminance = 0;            ///< of the exitance
-        float spread = 0;               ///< largest difference to a descendant's luminance
+        float magnitude = 0;            ///< the same, of its columns' absolute values
+        float spread = 0;               ///< magnitude of the largest difference to a descendant
     };
     std::vector<Node> nodes;      ///< root first
     std::vector<float> exitance;  ///< nodes × stride

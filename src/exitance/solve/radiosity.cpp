@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/solve/radiosity.h"
 
+#include <cmath>
+
 #include "exitance/math/polygon.h"
 #include "exitance/run/parallel.h"
 #include "exitance/visibility/exposure.h"
@@ -37,6 +39,12 @@ float Columns::luminance(std::span<const float> row) const {
     return sum;
 }
 
+float Columns::magnitude(std::span<const float> row) const {
+    float sum = 0;
+    for (std::size_t c = 0; c < stride; ++c) sum += weight[c] * std::abs(row[c]);
+    return sum;
+}
+
 Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
                      const MeshOptions& mesh_options)
     : scene(the_scene),
@@ -62,16 +70,13 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
     std::uint32_t smooth_count = 0;
     for (const Face& face : mesh.faces()) smooth_count = std::max(smooth_count, face.smooth + 1);
     material_of_smooth_.assign(smooth_count, 0);
-    double reflecting = 0;
     for (const Face& face : mesh.faces()) {
         material_of_smooth_[face.smooth] = scene.surfaces[face.surface].material;
         const auto corners = mesh.corners(face);
         const double a = exitance::area({corners.data(), face.count});
         area_ += a;
         emitted_flux_ += a * static_cast<double>(columns.luminance(emitted(face)));
-        reflecting += a * luminance(scene.materials[material_of_smooth_[face.smooth]].reflectance);
     }
-    mean_reflectance_ = area_ > 0 ? reflecting / area_ : 0.0;
     admit_new_vertices();
 }
 
@@ -116,19 +121,12 @@ void Radiosity::admit_new_vertices() {
     irradiance.resize_rows(count);
     seen.resize(count, 1.0f);
     variance.resize(count, 0.0f);
-    reflected.resize(count, 0.0f);
     shot.resize_rows(mesh.elements().size());
 }
 
 void Radiosity::receive(VertexId vertex, std::span<const float> row) {
     const auto H = irradiance[vertex];
-    const auto reflectance = rho(vertex);
-    float bounced = 0;
-    for (std::size_t c = 0; c < columns.stride; ++c) {
-        H[c] += row[c];
-        bounced += columns.weight[c] * reflectance[c] * row[c];
-    }
-    reflected[vertex.index()] += bounced;
+    for (std::size_t c = 0; c < columns.stride; ++c) H[c] += row[c];
 }
 
 float Radiosity::open_share(const Element& element) const {
@@ -188,8 +186,8 @@ Source Radiosity::source(const Face& face, const std::array<Vec3, 4>& corners) c
 
 std::size_t Radiosity::bytes() const {
     return mesh.bytes() + receivers.bytes() + exposed.capacity() + irradiance.bytes() +
-           (seen.capacity() + variance.capacity() + reflected.capacity()) * sizeof(float) +
-           sends.capacity() + shot.bytes();
+           (seen.capacity() + variance.capacity()) * sizeof(float) + sends.capacity() +
+           shot.bytes();
 }
 
 }  // namespace exitance

@@ -25,6 +25,9 @@ struct Columns {
     Columns(const std::vector<LightGroup>& light_groups, std::size_t band_count);
     /// Σ weight · row: the one number that adaptive decisions look at.
     float luminance(std::span<const float> row) const;
+    /// Σ weight · |row|: how much light a signed row moves; what one column has too much of does
+    /// not make up for what another lacks.
+    float magnitude(std::span<const float> row) const;
 };
 
 class Radiosity {
@@ -43,11 +46,10 @@ class Radiosity {
     /// Per vertex: exposed, and not on a place that another polygon owns. The others receive light
     /// but send none: it is sent already, or covered.
     std::vector<char> sends;
-    VertexField irradiance;        ///< H; rows of vertices that are not exposed stay zero
-    std::vector<float> seen;       ///< per vertex: visible share of the lamps' light
-    std::vector<float> variance;   ///< per vertex: of the luminance of H, from sampling visibility
-    std::vector<float> reflected;  ///< per vertex: luminance of ρ H
-    ElementField shot;             ///< per leaf: reflected exitance already shot
+    VertexField irradiance;       ///< H; rows of vertices that are not exposed stay zero
+    std::vector<float> seen;      ///< per vertex: visible share of the lamps' light
+    std::vector<float> variance;  ///< per vertex: of the luminance of H, from sampling visibility
+    ElementField shot;            ///< per leaf: reflected exitance already shot
 
     /// Reflectance per column of the face's material, and its emitted exitance.
     std::span<const float> rho(const Face& face) const;
@@ -58,7 +60,7 @@ class Radiosity {
 
     /// Makes receivers, rows and exposure for vertices that the mesh has gained.
     void admit_new_vertices();
-    /// H of `vertex` += what one shot brought; keeps `reflected` in step.
+    /// H of `vertex` += what one shot brought.
     void receive(VertexId vertex, std::span<const float> row);
 
     /// Share of an element's corners that send, which stands for the share of its area.
@@ -77,8 +79,6 @@ class Radiosity {
     /// ρ H of the sending part of an element.
     void reflected_exitance(ElementId leaf, std::span<float> out) const;
 
-    /// Area-weighted mean reflectance (luminance) of the scene's faces.
-    double mean_reflectance() const { return mean_reflectance_; }
     double area() const { return area_; }
     /// Luminance-weighted emitted flux.
     double emitted_flux() const { return emitted_flux_; }
@@ -95,7 +95,7 @@ class Radiosity {
     std::vector<float> emitted_;  ///< surface × stride
     std::vector<char> two_sided_;
     std::vector<std::uint32_t> material_of_smooth_;
-    double mean_reflectance_ = 0, area_ = 0, emitted_flux_ = 0;
+    double area_ = 0, emitted_flux_ = 0;
 };
 
 }  // namespace exitance

@@ -38,18 +38,14 @@ Shooting::Shooting(Radiosity& radiosity, const ShootingOptions& options)
     }
     std::stable_sort(emitters_.begin(), emitters_.end(),
                      [&](FaceId a, FaceId b) { return flux[a.index()] > flux[b.index()]; });
-    patch_shot_.assign(mesh.patches().size(), 0.0f);
-    patch_unshot_.assign(mesh.patches().size(), 0.0f);
     const std::size_t stride = radiosity_.columns.stride;
-    shot_flux_.assign(stride, 0.0);
+    patch_shot_.assign(mesh.patches().size() * stride, 0.0f);
+    patch_unshot_.assign(mesh.patches().size() * stride, 0.0f);
+    unshot_column_.assign(stride, 0.0);
     rho_area_.assign(stride, 0.0);
     for (const Patch& patch : mesh.patches()) {
         const auto rho = radiosity_.rho(mesh[patch.face]);
-        const auto a = static_cast<float>(patch.area);
         for (std::size_t c = 0; c < stride; ++c) rho_area_[c] += patch.area * double(rho[c]);
-        const Polygon& polygon = radiosity_.scene.polygons[mesh[patch.face].polygon.index()];
-        patch_rho_.push_back(
-            a * static_cast<float>(luminance(radiosity_.scene.material(polygon).reflectance)));
     }
     // Before anything is lit: what an even distribution of the emission would give.
     mean_irradiance_ = radiosity_.area() > 0 ? radiosity_.emitted_flux() / radiosity_.area() : 0.0;
@@ -68,25 +64,35 @@ bool Shooting::step() {
     }
     const auto [patch, moved] = brightest();
     if (moved <= 0) return false;
-    // Overshooting (Feda & Purgathofer 1992): a patch sends along what it will reflect of the
-    // ambient light; what arrives later and was already sent makes its unshot light negative, and
-    // is settled.
-    shoot_patch(PatchId(patch), options_.overshoot
-                                    ? ambient_per_column()
-                                    : std::vector<float>(radiosity_.columns.stride, 0.0f));
+    shoot_patch(PatchId(patch), overshoot());
     return true;
 }
 
+// Overshooting (Feda & Purgathofer 1992): a patch sends along what it will reflect of the ambient
+// light; what arrives later and was already sent makes its unshot light negative, and is settled.
+std::vector<float> Shooting::overshoot() const {
+    return options_.overshoot ? ambient() : std::vector<float>(radiosity_.columns.stride, 0.0f);
+}
+
 Shooting::Brightest Shooting::brightest() const {
-    const auto spread = options_.overshoot ? static_cast<float>(ambient()) : 0.0f;
+    const Mesh& mesh = radiosity_.mesh;
+    const Columns& columns = radiosity_.columns;
+    const std::vector<float> spread = overshoot();
+    std::vector<float> flux(columns.stride);
     Brightest best;
-    for (std::size_t p = 0; p < patch_unshot_.size(); ++p) {
-        const float moved = std::abs(patch_unshot_[p] + spread * patch_rho_[p]);
+    for (std::size_t p = 0; p < mesh.patches().size(); ++p) {
+        const Patch& patch = mesh.patches()[p];
+        const auto rho = radiosity_.rho(mesh[patch.face]);
+        const auto area = static_cast<float>(patch.area);
+        for (std::size_t c = 0; c < columns.stride; ++c)
+            flux[c] = patch_unshot_[p * columns.stride + c] + spread[c] * rho[c] * area;
+        const float moved = columns.magnitude(flux);
+        if (moved <= best.moved) continue;
         // What a patch has received and shot are sums in float: below their rounding nothing is
         // left.
         const auto terms = static_cast<float>(weight_begin_[p + 1] - weight_begin_[p]);
-        if (moved <= sum_rounding * (4 + std::sqrt(terms)) * std::abs(patch_shot_[p])) continue;
-        if (moved > best.moved) best = {p, moved};
+        const float shot = columns.magnitude({&patch_shot_[p * columns.stride], columns.stride});
+        if (moved > sum_rounding * (4 + std::sqrt(terms)) * shot) best = {p, moved};
     }
     return best;
 }
@@ -102,8 +108,10 @@ std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& receive
     std::uint64_t rays = 0;
     for (const FaceId face : emitters_) rays += cast(emission_of(radiosity_, face));
     received.note_seen();
-    for (std::size_t p = 0; p < patch_shot_.size(); ++p)
-        if (patch_shot_[p] != 0) rays += cast(shot_of(radiosity_, PatchId(p)));
+    const Columns& columns = radiosity_.columns;
+    for (std::size_t p = 0; p < radiosity_.mesh.patches().size(); ++p)
+        if (columns.magnitude({&patch_shot_[p * columns.stride], columns.stride}) > 0)
+            rays += cast(shot_of(radiosity_, PatchId(p)));
     return rays;
 }
 
@@ -154,58 +162,21 @@ void Shooting::shoot_patch(PatchId patch, const std::vector<float>& ambient) {
     };
     record(record, radiosity_.mesh[patch].root, 0);
     const LightSource::Node& root = source.nodes[0];
-    patch_shot_[patch.index()] += root.open_area * root.luminance;
     for (std::size_t c = 0; c < stride; ++c)
-        shot_flux_[c] += double(root.open_area) * double(source.exitance[c]);
+        patch_shot_[patch.index() * stride + c] += root.open_area * source.exitance[c];
     find_unshot();
 }
 
-namespace {
-
-struct FluxSums {
-    std::vector<double> reflected;
-    double received = 0;
-
-    FluxSums& operator+=(const FluxSums& other) {
-        reflected.resize(std::max(reflected.size(), other.reflected.size()), 0.0);
-        for (std::size_t c = 0; c < other.reflected.size(); ++c) reflected[c] += other.reflected[c];
-        received += other.received;
-        return *this;
-    }
-};
-
-}  // namespace
-
-// Adds what a shot brought to the vertices, and to the sums that are kept of them.
 void Shooting::deliver(const Received& received) {
-    weigh_patches();
     const std::size_t stride = radiosity_.columns.stride;
-    const FluxSums sums =
-        parallel_sum<FluxSums>(received.light.size(), [&](std::size_t begin, std::size_t end) {
-            FluxSums block{std::vector<double>(stride, 0.0)};
-            std::vector<float> total(stride, 0.0f);
-            for (std::size_t v = begin; v < end; ++v) {
-                if (!radiosity_.exposed[v] || received.unblocked[v] == 0) continue;
-                const auto row = received.row(v, stride);
-                radiosity_.receive(VertexId(v), row);
-                radiosity_.variance[v] += received.variance[v];
-                add_flux(v, row, total, block.reflected);
-            }
-            block.received = static_cast<double>(radiosity_.columns.luminance(total));
-            return block;
-        });
-    for (std::size_t c = 0; c < sums.reflected.size(); ++c) reflected_flux_[c] += sums.reflected[c];
-    received_flux_ += sums.received;
-}
-
-void Shooting::add_flux(std::size_t vertex, std::span<const float> row, std::vector<float>& total,
-                        std::vector<double>& reflected) const {
-    const auto rho = radiosity_.rho(VertexId(vertex));
-    const float w = vertex_weight_[vertex];
-    for (std::size_t c = 0; c < row.size(); ++c) {
-        reflected[c] += static_cast<double>(w * rho[c] * row[c]);
-        total[c] += w * row[c];
-    }
+    parallel_for(
+        received.light.size(),
+        [&](std::size_t v) {
+            if (!radiosity_.exposed[v] || received.unblocked[v] == 0) return;
+            radiosity_.receive(VertexId(v), received.row(v, stride));
+            radiosity_.variance[v] += received.variance[v];
+        },
+        1024);
 }
 
 void Shooting::weigh_patches() {
@@ -215,7 +186,7 @@ void Shooting::weigh_patches() {
     weight_begin_.assign(1, 0);
     weight_vertex_.clear();
     weight_.clear();
-    vertex_weight_.assign(mesh.vertices().size(), 0.0f);
+    open_area_ = 0;
     std::vector<Radiosity::Weight> mean;
     std::vector<std::pair<std::uint32_t, float>> sum;
     for (const Patch& patch : mesh.patches()) {
@@ -233,62 +204,83 @@ void Shooting::weigh_patches() {
                 weight_.push_back(0.0f);
             }
             weight_.back() += area;
-            vertex_weight_[vertex] += area;
+            open_area_ += static_cast<double>(area);
         }
         weight_begin_.push_back(static_cast<std::uint32_t>(weight_.size()));
     }
-    std::fill(shot_flux_.begin(), shot_flux_.end(), 0.0);
-    for (std::size_t p = 0; p < patch_shot_.size(); ++p) {
-        patch_shot_[p] = 0;
+    const std::size_t stride = radiosity_.columns.stride;
+    std::fill(patch_shot_.begin(), patch_shot_.end(), 0.0f);
+    for (std::size_t p = 0; p < mesh.patches().size(); ++p)
         mesh.for_leaves(mesh.patches()[p].root, [&](ElementId id) {
             const auto shot = radiosity_.shot[id];
             const float open = radiosity_.open_share(mesh[id]) * mesh[id].area;
-            patch_shot_[p] += open * radiosity_.columns.luminance(shot);
-            for (std::size_t c = 0; c < shot.size(); ++c) shot_flux_[c] += double(open * shot[c]);
+            for (std::size_t c = 0; c < stride; ++c) patch_shot_[p * stride + c] += open * shot[c];
         });
-    }
-    // Of the light received so far:
-    const std::size_t stride = radiosity_.columns.stride;
-    reflected_flux_.assign(stride, 0.0);
-    std::vector<float> total(stride, 0.0f);
-    for (std::size_t v = 0; v < vertex_weight_.size(); ++v)
-        add_flux(v, radiosity_.irradiance[VertexId(v)], total, reflected_flux_);
-    received_flux_ = static_cast<double>(radiosity_.columns.luminance(total));
-    received_area_ = std::accumulate(vertex_weight_.begin(), vertex_weight_.end(), 0.0);
 }
+
+namespace {
+
+struct FluxSums {
+    std::vector<double> received, unshot;  ///< per column
+    double magnitude = 0;                  ///< of what the patches have unshot
+
+    FluxSums& operator+=(const FluxSums& other) {
+        received.resize(std::max(received.size(), other.received.size()), 0.0);
+        unshot.resize(received.size(), 0.0);
+        for (std::size_t c = 0; c < other.received.size(); ++c) {
+            received[c] += other.received[c];
+            unshot[c] += other.unshot[c];
+        }
+        magnitude += other.magnitude;
+        return *this;
+    }
+};
+
+}  // namespace
 
 void Shooting::find_unshot() {
     weigh_patches();
-    unshot_flux_ = parallel_sum<double>(
-        patch_unshot_.size(),
+    const Mesh& mesh = radiosity_.mesh;
+    const Columns& columns = radiosity_.columns;
+    const std::size_t stride = columns.stride;
+    const FluxSums sums = parallel_sum<FluxSums>(
+        mesh.patches().size(),
         [&](std::size_t begin, std::size_t end) {
-            double sum = 0;
+            FluxSums block{std::vector<double>(stride, 0.0), std::vector<double>(stride, 0.0)};
+            std::vector<float> received(stride);
             for (std::size_t p = begin; p < end; ++p) {
-                float reflected = 0;
-                for (std::uint32_t k = weight_begin_[p]; k < weight_begin_[p + 1]; ++k)
-                    reflected += weight_[k] * radiosity_.reflected[weight_vertex_[k]];
-                patch_unshot_[p] = reflected - patch_shot_[p];
-                sum += static_cast<double>(std::abs(patch_unshot_[p]));
+                std::fill(received.begin(), received.end(), 0.0f);
+                for (std::uint32_t k = weight_begin_[p]; k < weight_begin_[p + 1]; ++k) {
+                    const auto H = radiosity_.irradiance[VertexId(weight_vertex_[k])];
+                    for (std::size_t c = 0; c < stride; ++c) received[c] += weight_[k] * H[c];
+                }
+                const auto rho = radiosity_.rho(mesh[mesh.patches()[p].face]);
+                const std::span<float> unshot{&patch_unshot_[p * stride], stride};
+                for (std::size_t c = 0; c < stride; ++c) {
+                    unshot[c] = rho[c] * received[c] - patch_shot_[p * stride + c];
+                    block.received[c] += static_cast<double>(received[c]);
+                    block.unshot[c] += static_cast<double>(unshot[c]);
+                }
+                block.magnitude += static_cast<double>(columns.magnitude(unshot));
             }
-            return sum;
+            return block;
         },
         256);
-    if (received_area_ > 0)
-        mean_irradiance_ = received_flux_ / received_area_ + std::max(0.0, ambient());
+    unshot_flux_ = sums.magnitude;
+    unshot_column_ = sums.unshot;
+    unshot_column_.resize(stride, 0.0);
+    if (open_area_ <= 0) return;
+    double received = 0;
+    for (std::size_t c = 0; c < stride; ++c)
+        received += double(columns.weight[c]) * sums.received[c];
+    const double to_come = static_cast<double>(columns.luminance(ambient()));
+    mean_irradiance_ = received / open_area_ + std::max(0.0, to_come);
 }
 
-double Shooting::ambient() const {
-    double sum = 0;
-    for (const float u : patch_unshot_) sum += static_cast<double>(u);
-    return radiosity_.area() > 0 ? sum / radiosity_.area() / (1.0 - radiosity_.mean_reflectance())
-                                 : 0.0;
-}
-
-std::vector<float> Shooting::ambient_per_column() const {
+std::vector<float> Shooting::ambient() const {
     std::vector<float> row(radiosity_.columns.stride, 0.0f);
     for (std::size_t c = 0; c < radiosity_.columns.count; ++c)
-        row[c] = static_cast<float>((reflected_flux_[c] - shot_flux_[c]) /
-                                    (radiosity_.area() - rho_area_[c]));
+        row[c] = static_cast<float>(unshot_column_[c] / (radiosity_.area() - rho_area_[c]));
     return row;
 }
 

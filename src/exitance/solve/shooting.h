@@ -42,11 +42,9 @@ class Shooting final : public Solver {
     std::uint64_t shots() const { return shots_; }
     std::uint64_t rays() const { return rays_; }
 
-    /// Ambient estimate of Cohen et al. 1988: irradiance (luminance) that everything still unshot
-    /// would add on average; falls to 0 as the solution converges.
-    double ambient() const;
-    /// The same per column of the field.
-    std::vector<float> ambient_per_column() const;
+    /// Ambient estimate of Cohen et al. 1988: irradiance that everything still unshot
+    /// would add on average, per column of the field; falls to 0 as the solution converges.
+    std::vector<float> ambient() const;
 
   private:
     void shoot_emission();
@@ -54,12 +52,11 @@ class Shooting final : public Solver {
     std::uint64_t illuminate(const Receivers& receivers, Received& received);
     void refine_mesh();
     void deliver(const Received& received);
-    void add_flux(std::size_t vertex, std::span<const float> row, std::vector<float>& total,
-                  std::vector<double>& reflected) const;
     struct Brightest {
         std::size_t patch = 0;
-        float moved = 0;  ///< luminance-weighted flux
+        float moved = 0;  ///< flux, Columns::magnitude
     };
+    std::vector<float> overshoot() const;
     /// The patch whose shot moves most light.
     Brightest brightest() const;
     void weigh_patches();
@@ -75,17 +72,13 @@ class Shooting final : public Solver {
     std::vector<std::uint32_t> weight_begin_, weight_vertex_;
     std::vector<float> weight_;
     std::size_t weighed_elements_ = 0;
-    std::vector<float> vertex_weight_;    ///< area that a vertex stands for
-    std::vector<float> patch_rho_;        ///< luminance of the reflectance × area
-    std::vector<float> patch_shot_;       ///< luminance of the reflected flux already shot
-    std::vector<float> patch_unshot_;     ///< luminance × area, signed
-    double unshot_flux_ = 0;              ///< Σ |patch_unshot_|
-    std::vector<double> reflected_flux_;  ///< Σ A ρ H per column
-    std::vector<double> shot_flux_;       ///< the part of it already shot
-    std::vector<double> rho_area_;        ///< Σ A ρ per column
-    double received_flux_ = 0;            ///< Σ A H, luminance, over the exposed area
-    double received_area_ = 0;
-    double mean_irradiance_ = 0;
+    std::vector<float> patch_shot_;      ///< reflected flux already shot: patches × columns
+    std::vector<float> patch_unshot_;    ///< the rest of the reflected flux, signed
+    double unshot_flux_ = 0;             ///< Σ of its magnitudes
+    std::vector<double> unshot_column_;  ///< Σ over the patches, signed
+    std::vector<double> rho_area_;       ///< Σ A ρ per column
+    double open_area_ = 0;               ///< that receives and sends
+    double mean_irradiance_ = 0;         ///< luminance
 
     Received received_;
     std::vector<std::uint32_t> everyone_;
