@@ -5,7 +5,7 @@
 
 # What `make demo` lights, and how well: make demo SCENE=scenes/cornell.toml ERROR=0.01
 SCENE ?= scenes/office.toml
-ERROR ?= 0.03
+ERROR ?= 0.05
 DEMO := out/$(basename $(notdir $(SCENE)))
 
 help: ## list the targets

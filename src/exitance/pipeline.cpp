@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "exitance/run/error.h"
@@ -34,16 +35,23 @@ double extent(const Scene& scene) {
 // The error asked for is spent on interpolation, whose part falls with the square of an element's
 // size: patches shrink with its root. At 2 % a patch is a twentieth of the extent.
 MeshOptions mesh_options(const SolveOptions& options, double extent) {
-    return {options.patch_size.value_or(
-                std::max(1e-9, 0.05 * extent * std::sqrt(options.error / 0.02))),
-            true};
+    MeshOptions out;
+    out.patch_size = options.patch_size.value_or(
+        std::max(1e-9, 0.05 * extent * std::sqrt(options.error / 0.02)));
+    // Shorter contacts are left to the elements: light gets round what stands on them.
+    out.shortest_contact = 0.25 * out.patch_size;
+    return out;
+}
+
+double min_area(const SolveOptions& options, double error, double extent) {
+    const double smallest = 0.1 * error * extent;
+    return options.min_area.value_or(smallest * smallest);
 }
 
 ShootingOptions shooting_options(const SolveOptions& options, double extent) {
     ShootingOptions out;
     out.error = options.error;
-    const double smallest = 0.1 * options.error * extent;
-    out.min_area = options.min_area.value_or(smallest * smallest);
+    out.min_area = min_area(options, options.error, extent);
     out.adaptive = options.adaptive;
     out.overshoot = options.overshoot;
     out.column.factor = options.form_factor == "disk" ? PointFactor::disk : PointFactor::lambert;
@@ -75,6 +83,24 @@ Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
     };
 }
 
+/// What is demanded of a solver. It does what should lead to the error asked for; held-out points
+/// tell whether it did, and if not, more is demanded while that helps.
+struct Demand {
+    double error;
+    double found = INFINITY;  ///< by the held-out points, the last time
+
+    bool rise(const SolveOptions& options, const Radiosity& radiosity) {
+        constexpr double least = 0.1, worthwhile = 0.9;
+        if (!options.adaptive || options.unshot || options.next_shot) return false;
+        const auto estimate = estimate_error(extract_solution(radiosity), options.seed);
+        if (!estimate || estimate->rms <= options.error) return false;
+        if (estimate->rms > worthwhile * found || error <= least * options.error) return false;
+        found = estimate->rms;
+        error *= std::clamp(0.8 * options.error / found, 0.4, 0.8);
+        return true;
+    }
+};
+
 }  // namespace
 
 Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe,
@@ -92,8 +118,11 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
         return (cancel && cancel->requested()) || (options.time && clock.seconds() > *options.time);
     };
     Shooting solver(radiosity, shooting);
-    run(solver, {options.unshot, options.time, options.next_shot, cancel}, clock,
-        with_snapshots(observe, snapshots, radiosity, solver));
+    const Stop stop{options.unshot, options.time, options.next_shot, cancel};
+    const Observer watch = with_snapshots(observe, snapshots, radiosity, solver);
+    Demand demand{options.error};
+    while (run(solver, stop, clock, watch) == Ended::converged && demand.rise(options, radiosity))
+        solver.demand(demand.error, min_area(options, demand.error, size));
     if (snapshots.take) take_snapshot(snapshots, radiosity, solver);
     const EnergyBalance energy = balance(radiosity, options.seed);
     if (options.merge) merge_smooth(radiosity, solver.negligible());

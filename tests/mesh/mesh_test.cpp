@@ -61,7 +61,7 @@ TEST(Patches, AsManyInARowAsAFileMayAskFor) {
     const ElementId last = mesh.patches().back().root;
     EXPECT_GT(mesh[last].u + mesh[last].v, 1 << 29);
     EXPECT_FALSE(mesh.split(last).empty());
-    std::vector<PositionId> none;
+    std::vector<Mesh::Between> none;
     mesh.between(mesh[last], 0, std::vector<char>(mesh.positions().size(), 0), none);
     EXPECT_TRUE(none.empty());
 }

@@ -16,6 +16,8 @@ namespace exitance {
 namespace {
 
 using namespace mesh_scenes;
+using exitance::testing::add_polygon;
+using exitance::testing::add_surface;
 
 using Bits = std::array<std::uint32_t, 3>;
 Bits bits_of(const Vec3f& p) {
@@ -81,7 +83,7 @@ std::size_t t_vertices(const Solution& solution) {
 }
 
 Radiosity radiosity_of(const Scene& scene, double patch_size = 10) {
-    return Radiosity(scene, make_groups(scene, Grouping::none), {patch_size, true});
+    return Radiosity(scene, make_groups(scene, Grouping::none), {patch_size, true, 0.1});
 }
 
 void expect_watertight(const Scene& scene) {
@@ -132,6 +134,33 @@ TEST(Watertight, TurnedAndFarFromTheOrigin) {
                z = cross(x, y);
     for (Vec3& p : scene.points) p = Vec3{7.3, -3.1, 12.7} + x * p.x + y * p.y + z * p.z;
     expect_watertight(scene);
+}
+
+TEST(Watertight, PartedByWallsThatStandOnIt) {
+    // The walls' own borders lie on the room's surfaces, so only the room's edges are counted.
+    const Scene room = box({1, 2, 3}, {1, 2, 3, 4, 5, 7});
+    Scene scene = room;
+    const auto wall = add_surface(scene, "partition", 0.5);
+    add_polygon(scene, wall, {{0.4, 0, 0}, {0.4, 0.7, 0}, {0.4, 0.7, 3}, {0.4, 0, 3}});
+    add_polygon(scene, wall, {{0.4, 0.7, 0}, {1, 0.9, 0}, {1, 0.9, 3}, {0.4, 0.7, 3}});
+    add_polygon(scene, wall, {{0.1, 0.2, 0}, {0.3, 1.5, 0}, {0.3, 1.5, 1}});
+    for (std::uint64_t seed = 0; seed < 3; ++seed) {
+        Radiosity radiosity = radiosity_of(scene);
+        const auto check = [&](const char* after) {
+            radiosity.admit_new_vertices();
+            Solution solution = extract_solution(radiosity);
+            const SolutionPart& partition = solution.parts.back();
+            ASSERT_EQ(partition.name, "partition");
+            solution.triangles.resize(partition.first_triangle);
+            EXPECT_EQ(open_edges(solution), 0u) << "seed " << seed << " " << after;
+            EXPECT_EQ(t_vertices(solution), 0u) << "seed " << seed << " " << after;
+        };
+        check("undivided");
+        split_at_random(radiosity.mesh, seed, 60);
+        check("after splits");
+        merge_at_random(radiosity.mesh, seed);
+        check("after merges");
+    }
 }
 
 TEST(Watertight, DownToTheFinestLevelAtEveryCorner) {

@@ -75,7 +75,7 @@ TEST_P(Partition, LetsLittleReflectedLightThrough) {
             areas[v] * double(solution.irradiance[VertexId(v)][0]);
     }
     EXPECT_GT(bright, 0.1);
-    EXPECT_LT(dark, 0.04 * bright) << dark / bright;
+    EXPECT_LT(dark, 1e-4 * bright) << dark / bright;
 }
 
 // At a patch boundary (0.05), between two (0), and a hair beside one.

@@ -3,7 +3,7 @@
 #include "exitance/mesh/mesh.h"
 
 #include <algorithm>
-#include <numeric>
+#include <cmath>
 
 #include "exitance/math/polygon.h"
 #include "exitance/run/random.h"
@@ -55,8 +55,8 @@ std::optional<std::uint32_t> Mesh::corner_at(const Face& face, std::int32_t u,
     return std::nullopt;
 }
 
-std::optional<Mesh::Fraction> Mesh::place_on(const Face& face, std::uint32_t side, std::int32_t u,
-                                             std::int32_t v) const {
+std::optional<std::int64_t> Mesh::place_on(const Face& face, std::uint32_t side, std::int32_t u,
+                                           std::int32_t v) const {
     const std::int32_t U = static_cast<std::int32_t>(face.columns) * unit;
     const std::int32_t V = static_cast<std::int32_t>(face.rows) * unit;
     const bool quad = face.count == 4;
@@ -75,17 +75,35 @@ std::optional<Mesh::Fraction> Mesh::place_on(const Face& face, std::uint32_t sid
             off = u, along = V - v, length = V;
     }
     if (off != 0) return std::nullopt;
-    if (edges_[face.edges[side]][0] != face.corners[side]) along = length - along;
-    const std::int32_t divisor = std::gcd(along, length);
-    return Fraction{static_cast<std::uint32_t>(along / divisor),
-                    static_cast<std::uint32_t>(length / divisor)};
+    // From the side's lower end whichever way the face runs, so that all faces agree.
+    const auto [edge, begin, end, smooth] = face.sides[side];
+    if (begin > end) along = length - along;
+    const std::int64_t low = std::min(begin, end), high = std::max(begin, end);
+    return low +
+           std::llround(static_cast<double>(high - low) * (static_cast<double>(along) / length));
 }
 
 std::optional<Mesh::EdgePlace> Mesh::edge_place(const Face& face, std::int32_t u,
                                                 std::int32_t v) const {
     for (std::uint32_t side = 0; side < face.count; ++side)
-        if (const auto fraction = place_on(face, side, u, v)) return EdgePlace{side, *fraction};
+        if (const auto step = place_on(face, side, u, v)) return EdgePlace{side, *step};
     return std::nullopt;
+}
+
+std::uint32_t Mesh::smooth_at(const Face& face, std::uint32_t side, std::int64_t step) const {
+    const Face::Side& along = face.sides[side];
+    if (along.smooth == face.smooth) return face.smooth;
+    for (const Edge::Contact& contact : edges_[along.edge].contacts)
+        if (contact.first <= step && step <= contact.last) return along.smooth;
+    return face.smooth;
+}
+
+std::uint32_t Mesh::smooth_at(const Face& face, std::int32_t u, std::int32_t v) const {
+    if (const auto corner = corner_at(face, u, v)) return face.corner_smooth[*corner];
+    for (std::uint32_t side = 0; side < face.count; ++side)
+        if (face.sides[side].smooth != face.smooth)
+            if (const auto step = place_on(face, side, u, v)) return smooth_at(face, side, *step);
+    return face.smooth;
 }
 
 namespace {
@@ -109,9 +127,8 @@ std::array<std::uint32_t, 2> polygon_coordinates(const Face& face, std::int32_t 
 Vec3 Mesh::point(const Face& face, std::int32_t u, std::int32_t v) const {
     if (const auto corner = corner_at(face, u, v)) return (*this)[face.corners[*corner]];
     if (const auto place = edge_place(face, u, v)) {
-        const auto& [low, high] = edges_[face.edges[place->side]];
-        const double t = static_cast<double>(place->fraction.numerator) /
-                         static_cast<double>(place->fraction.denominator);
+        const auto& [low, high] = edges_[face.sides[place->side].edge].ends;
+        const double t = static_cast<double>(place->step) / edge_steps;
         return (*this)[low] + ((*this)[high] - (*this)[low]) * t;
     }
     // Bilinear or barycentric over the corners in the polygon's own order.
@@ -146,12 +163,12 @@ std::optional<PositionId> Mesh::find_position(const Face& face, std::int32_t u,
                                               std::int32_t v) const {
     if (const auto corner = corner_at(face, u, v)) return face.corners[*corner];
     if (const auto place = edge_place(face, u, v)) {
-        const auto& places = on_edge_[face.edges[place->side]];
-        const auto found = places.find(place->fraction);
+        const auto& places = edges_[face.sides[place->side].edge].places;
+        const auto found = places.find(place->step);
         return found == places.end() ? std::nullopt : std::optional(found->second);
     }
     const auto [pu, pv] = polygon_coordinates(face, u, v);
-    const auto found = inside_.find({face.polygon.value, std::uint64_t{pu} << 32 | pv});
+    const auto found = inside_.find({face.piece, std::uint64_t{pu} << 32 | pv});
     return found == inside_.end() ? std::nullopt : std::optional(found->second);
 }
 
@@ -160,17 +177,17 @@ PositionId Mesh::make_position(const Face& face, std::int32_t u, std::int32_t v)
     const PositionId id(positions_.size());
     positions_.push_back(point(face, u, v));
     if (const auto place = edge_place(face, u, v)) {
-        on_edge_[face.edges[place->side]].emplace(place->fraction, id);
+        edges_[face.sides[place->side].edge].places.emplace(place->step, id);
     } else {
         const auto [pu, pv] = polygon_coordinates(face, u, v);
-        inside_.insert({{face.polygon.value, std::uint64_t{pu} << 32 | pv}, id});
+        inside_.insert({{face.piece, std::uint64_t{pu} << 32 | pv}, id});
     }
     return id;
 }
 
 std::optional<VertexId> Mesh::find_vertex(const Face& face, std::int32_t u, std::int32_t v) const {
     const auto position = find_position(face, u, v);
-    return position ? find_vertex(*position, face.smooth) : std::nullopt;
+    return position ? find_vertex(*position, smooth_at(face, u, v)) : std::nullopt;
 }
 
 std::optional<VertexId> Mesh::find_vertex(PositionId position, std::uint32_t smooth) const {
@@ -192,11 +209,12 @@ Vec3 Mesh::sample_point(const Element& element, std::int32_t u, std::int32_t v) 
 VertexId Mesh::make_vertex(const Element& element, const Face& face, std::int32_t u,
                            std::int32_t v) {
     const PositionId position = make_position(face, u, v);
+    const std::uint32_t smooth = smooth_at(face, u, v);
     const auto [slot, fresh] =
-        vertex_at_.insert({{position.value, face.smooth}, VertexId(vertices_.size())});
+        vertex_at_.insert({{position.value, smooth}, VertexId(vertices_.size())});
     const VertexId id = slot->second;
     if (fresh)
-        vertices_.push_back({position, face.smooth, (*this)[element.patch].face,
+        vertices_.push_back({position, smooth, (*this)[element.patch].face,
                              Vec3f(normal(face, u, v)), sample_point(element, u, v)});
     return id;
 }
@@ -310,7 +328,7 @@ void Mesh::merge(ElementId parent) {
 }
 
 void Mesh::between(const Element& element, std::uint32_t side, const std::vector<char>& live,
-                   std::vector<PositionId>& out) const {
+                   std::vector<Between>& out) const {
     const Face& face = face_of(element);
     const Midpoints at = element_corners(element);
     const auto a = at.at[side], b = at.at[(side + 1) % at.count];
@@ -320,15 +338,14 @@ void Mesh::between(const Element& element, std::uint32_t side, const std::vector
         const auto from = place_on(face, border, a[0], a[1]);
         const auto to = place_on(face, border, b[0], b[1]);
         if (!from || !to) continue;
-        const std::uint32_t edge = face.edges[border];
-        const bool forward = edges_[edge][0] == face.corners[border];
-        const auto& places = on_edge_[edge];
+        const auto& places = edges_[face.sides[border].edge].places;
         const auto first = places.upper_bound(std::min(*from, *to));
         const auto last = places.lower_bound(std::max(*from, *to));
         const std::size_t start = out.size();
         for (auto it = first; it != last; ++it)
-            if (live[it->second.index()]) out.push_back(it->second);
-        if (!forward) std::reverse(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
+            if (live[it->second.index()])
+                out.push_back({it->second, smooth_at(face, border, it->first)});
+        if (*from > *to) std::reverse(out.begin() + static_cast<std::ptrdiff_t>(start), out.end());
         return;
     }
     // Inside the face: bisect as the neighbour's quadtree does.
@@ -339,7 +356,7 @@ void Mesh::between(const Element& element, std::uint32_t side, const std::vector
         const auto position = find_position(face, m[0], m[1]);
         if (!position || !live[position->index()]) return;
         self(self, p, m);
-        out.push_back(*position);
+        out.push_back({*position, face.smooth});
         self(self, m, q);
     };
     visit(visit, a, b);
@@ -347,12 +364,12 @@ void Mesh::between(const Element& element, std::uint32_t side, const std::vector
 
 std::size_t Mesh::bytes() const {
     std::size_t on_edges = 0;
-    for (const auto& places : on_edge_) on_edges += places.size();
+    for (const Edge& edge : edges_) on_edges += edge.places.size();
     return positions_.capacity() * sizeof(Vec3) + faces_.capacity() * sizeof(Face) +
            patches_.capacity() * sizeof(Patch) + elements_.capacity() * sizeof(Element) +
            vertices_.capacity() * sizeof(Vertex) +
            (inside_.bucket_count() + vertex_at_.bucket_count()) * 32 +
-           leaves_at_.bucket_count() * 40 + on_edges * 48 + on_edge_.size() * sizeof(on_edge_[0]);
+           leaves_at_.bucket_count() * 40 + on_edges * 48 + edges_.capacity() * sizeof(Edge);
 }
 
 }  // namespace exitance

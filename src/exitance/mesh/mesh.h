@@ -24,7 +24,8 @@
 
 namespace exitance {
 
-/// One side of a polygon, divided into `columns` × `rows` patches (a triangle: `columns`² patches).
+/// One side of a polygon, or of a piece of one that contacts divide; divided into `columns` ×
+/// `rows` patches (a triangle: `columns`² patches).
 struct Face {
     PolygonId polygon;
     bool back = false;  ///< the reverse side of a two-sided polygon
@@ -32,9 +33,19 @@ struct Face {
     std::uint32_t smooth = 0;  ///< faces with the same number share vertices
     std::uint32_t count = 4;   ///< corners
     std::array<PositionId, 4> corners;
-    std::array<std::uint32_t, 4> edges{};  ///< input edge from corner i to i + 1
-    std::array<Vec3, 4> normals{};         ///< shading normals at the corners
+    std::array<Vec3, 4> normals{};  ///< shading normals at the corners
     Vec3 normal;
+    /// From corner i to i + 1: a part of an edge.
+    struct Side {
+        std::uint32_t edge = 0;
+        std::int64_t begin = 0, end = 0;  ///< in steps of the edge's canonical direction
+        /// Takes the place of `smooth` where something stands on the side; `smooth` if nothing
+        /// does.
+        std::uint32_t smooth = 0;
+    };
+    std::array<Side, 4> sides{};
+    std::array<std::uint32_t, 4> corner_smooth{};  ///< the same of its corners
+    std::uint32_t piece = 0;  ///< of a polygon that contacts divide; the same for both faces of one
     std::uint32_t columns = 1, rows = 1;
     PatchId first_patch;
 };
@@ -73,6 +84,8 @@ struct Vertex {
 struct MeshOptions {
     double patch_size = 0.5;  ///< longest patch edge where the file does not say [m]
     bool divide_as_file = true;
+    /// Polygons are cut along contacts at least as long as this [m]: light may jump across them.
+    double shortest_contact = 0.1;
 };
 
 class Mesh {
@@ -132,10 +145,15 @@ class Mesh {
     /// Whether `parent`'s children are leaves and no neighbour is finer than they are.
     bool can_merge(ElementId parent) const;
 
-    /// Positions strictly between `a` and `b` on the side of `element` that runs from corner
-    /// `side` to the next, in order, as far as `live` [one per position] says that they are used.
+    /// A place as part of a smooth surface.
+    struct Between {
+        PositionId position;
+        std::uint32_t smooth;
+    };
+    /// Positions strictly between the ends of the side of `element` that runs from corner `side` to
+    /// the next, in order, as far as `live` [one per position] says that they are used.
     void between(const Element& element, std::uint32_t side, const std::vector<char>& live,
-                 std::vector<PositionId>& out) const;
+                 std::vector<Between>& out) const;
 
     /// Calls `visit(ElementId)` for the leaves below `root`, in a fixed order.
     template <class Visit>
@@ -158,23 +176,30 @@ class Mesh {
     };
     template <class Value>
     using Table = tsl::robin_map<Key, Value, KeyHash>;
-    /// A place on an input edge, as a reduced fraction of the way from its lower to its higher end.
-    struct Fraction {
-        std::uint32_t numerator, denominator;
-        friend bool operator<(const Fraction& a, const Fraction& b) {
-            return std::uint64_t{a.numerator} * b.denominator <
-                   std::uint64_t{b.numerator} * a.denominator;
-        }
+    /// A straight line between two places along which faces meet. Places on it are counted in steps
+    /// from the lower of its ends to the higher.
+    struct Edge {
+        std::array<PositionId, 2> ends;
+        std::map<std::int64_t, PositionId> places;  ///< between the ends
+        struct Contact {
+            std::int64_t first, last;  ///< steps
+            PolygonId polygon;         ///< that stands there
+        };
+        std::vector<Contact> contacts{};
     };
+    static constexpr std::int64_t edge_steps = std::int64_t{1} << 40;
     struct EdgePlace {
         std::uint32_t side;  ///< of the face
-        Fraction fraction;   ///< along the canonical direction of the input edge
+        std::int64_t step;   ///< along the edge
     };
 
-    /// How far along a side of the face a place is; nothing if it is not on that side.
-    std::optional<Fraction> place_on(const Face& face, std::uint32_t side, std::int32_t u,
-                                     std::int32_t v) const;
+    /// How far along the edge of a side of the face a place is; nothing if it is not on that side.
+    std::optional<std::int64_t> place_on(const Face& face, std::uint32_t side, std::int32_t u,
+                                         std::int32_t v) const;
     std::optional<EdgePlace> edge_place(const Face& face, std::int32_t u, std::int32_t v) const;
+    /// The smooth surface that a place of the face belongs to.
+    std::uint32_t smooth_at(const Face& face, std::int32_t u, std::int32_t v) const;
+    std::uint32_t smooth_at(const Face& face, std::uint32_t side, std::int64_t step) const;
     std::optional<std::uint32_t> corner_at(const Face& face, std::int32_t u, std::int32_t v) const;
     std::optional<PositionId> find_position(const Face& face, std::int32_t u, std::int32_t v) const;
     PositionId make_position(const Face& face, std::int32_t u, std::int32_t v);
@@ -184,10 +209,7 @@ class Mesh {
     std::optional<ElementId> other_leaf(VertexId a, VertexId b, ElementId than) const;
     void split_into(ElementId leaf, std::vector<ElementId>& done);
 
-    void weld(const Scene& scene);
-    void make_faces(const Scene& scene, const MeshOptions& options);
-    void join_smooth(const Scene& scene);
-    void make_patches();
+    friend class MeshBuilder;
 
     std::vector<Vec3> positions_;
     std::vector<Face> faces_;
@@ -195,11 +217,9 @@ class Mesh {
     std::vector<Element> elements_;
     std::vector<Vertex> vertices_;
 
-    std::vector<PositionId> position_of_point_;  ///< per scene point
-    std::vector<std::array<PositionId, 2>> edges_;
-    std::vector<std::map<Fraction, PositionId>> on_edge_;  ///< places on each input edge
-    Table<PositionId> inside_;                             ///< (polygon, u, v) → place
-    Table<VertexId> vertex_at_;                            ///< (position, smooth) → vertex
+    std::vector<Edge> edges_;
+    Table<PositionId> inside_;                   ///< (piece, u, v) → place
+    Table<VertexId> vertex_at_;                  ///< (position, smooth) → vertex
     Table<std::array<ElementId, 2>> leaves_at_;  ///< (vertex, vertex) → leaves on that edge
     std::vector<ElementId> free_children_;       ///< slots of merged children
 };

@@ -51,6 +51,12 @@ Vec3 point_on(const Sender& s, UnitSquare u) {
     return s.corners[0] * w[0] + b * w[1] + c * w[2];
 }
 
+// A number for i that keeps blocks of powers of two together (Burley 2020): two sequences, one of
+// them in this order, are independent and stratified each.
+std::uint32_t shuffled(std::uint32_t i, std::uint64_t seed) {
+    return owen_scramble(i, static_cast<std::uint32_t>(hash_bits(seed, 3)));
+}
+
 // Rays in proportion to what each sender sends, followed to where they land.
 Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
             const std::vector<double>& cumulative, std::uint64_t seed) {
@@ -71,8 +77,7 @@ Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
                 const Sender& sender = senders[std::min(s, senders.size() - 1)];
                 covered[k] = sender.covered;
                 const Vec3 origin =
-                    point_on(sender,
-                             {uniform(hash_bits(seed, i), 1), uniform(hash_bits(seed, i), 2)}) +
+                    point_on(sender, low_discrepancy(hash_bits(seed, 2), shuffled(i, seed))) +
                     sender.normal * radiosity.caster.clearance() - radiosity.caster.middle();
                 const Vec3 d =
                     Frame(sender.normal).to_world(cosine_hemisphere(low_discrepancy(seed + 1, i)));

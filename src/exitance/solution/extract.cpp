@@ -128,7 +128,6 @@ class Extraction {
 
     // The outline of a leaf: its corners and every place that others put on its sides.
     void outline(const Element& element, std::vector<std::uint32_t>& loop) {
-        const std::uint32_t smooth = mesh_.face_of(element).smooth;
         loop.clear();
         for (std::uint32_t side = 0; side < element.count; ++side) {
             const VertexId from = element.vertices[side];
@@ -137,19 +136,24 @@ class Extraction {
             between_.clear();
             mesh_.between(element, side, live_, between_);
             for (std::size_t k = 0; k < between_.size(); ++k) {
-                if (const auto own = mesh_.find_vertex(between_[k], smooth)) {
+                if (const auto own = own_vertex(k)) {
                     loop.push_back(vertex(*own));
                     continue;
                 }
                 // Only other surfaces have a vertex here: interpolate between our nearest two.
                 VertexId before = from, after = to;
                 for (std::size_t j = k; j-- > 0 && before == from;)
-                    if (const auto own = mesh_.find_vertex(between_[j], smooth)) before = *own;
+                    before = own_vertex(j).value_or(from);
                 for (std::size_t j = k + 1; j < between_.size() && after == to; ++j)
-                    if (const auto own = mesh_.find_vertex(between_[j], smooth)) after = *own;
-                loop.push_back(interpolated(between_[k], smooth, before, after));
+                    after = own_vertex(j).value_or(to);
+                loop.push_back(
+                    interpolated(between_[k].position, between_[k].smooth, before, after));
             }
         }
+    }
+
+    std::optional<VertexId> own_vertex(std::size_t k) const {
+        return mesh_.find_vertex(between_[k].position, between_[k].smooth);
     }
 
     std::uint32_t interpolated(PositionId at, std::uint32_t smooth, VertexId a, VertexId b) {
@@ -212,7 +216,7 @@ class Extraction {
     std::vector<float> buried_;  ///< vertices × stride, or empty
     std::vector<float> rows_;    ///< irradiance of the vertices made so far
     tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash> index_;
-    std::vector<PositionId> between_;
+    std::vector<Mesh::Between> between_;
     std::vector<std::uint32_t> loop_;
     std::vector<std::uint32_t> part_of_surface_;
 };

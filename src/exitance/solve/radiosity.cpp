@@ -67,11 +67,7 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
                 static_cast<float>(scene.materials[scene.surfaces[s].material].exitance[b]);
     for (const Polygon& p : scene.polygons) two_sided_.push_back(scene.material(p).two_sided);
 
-    std::uint32_t smooth_count = 0;
-    for (const Face& face : mesh.faces()) smooth_count = std::max(smooth_count, face.smooth + 1);
-    material_of_smooth_.assign(smooth_count, 0);
     for (const Face& face : mesh.faces()) {
-        material_of_smooth_[face.smooth] = scene.surfaces[face.surface].material;
         const auto corners = mesh.corners(face);
         const double a = exitance::area({corners.data(), face.count});
         area_ += a;
@@ -85,7 +81,7 @@ std::span<const float> Radiosity::rho(const Face& face) const {
 }
 
 std::span<const float> Radiosity::rho(VertexId vertex) const {
-    return {&rho_[material_of_smooth_[mesh[vertex].smooth] * columns.stride], columns.stride};
+    return rho(mesh[mesh[vertex].face]);
 }
 
 std::span<const float> Radiosity::emitted(const Face& face) const {

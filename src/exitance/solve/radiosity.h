@@ -94,7 +94,6 @@ class Radiosity {
     std::vector<float> rho_;      ///< material × stride
     std::vector<float> emitted_;  ///< surface × stride
     std::vector<char> two_sided_;
-    std::vector<std::uint32_t> material_of_smooth_;
     double area_ = 0, emitted_flux_ = 0;
 };
 

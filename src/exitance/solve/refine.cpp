@@ -24,6 +24,10 @@ constexpr float shadow_threshold = 0.2f, smooth_threshold = 0.25f;
 constexpr float gradient_threshold = 0.5f;
 // A thorough test looks at patches and their children whatever their corners say.
 constexpr int thorough_level = 1;
+// How many times the tolerance a small element may be wrong by.
+constexpr float most_tolerant = 8;
+// The least side of a long element, in terms of its length, that its smallness is judged by.
+constexpr double longest_aspect = 8;
 constexpr std::size_t batch_size = 1024;
 constexpr float noise_deviations = 1;
 
@@ -78,9 +82,11 @@ class Refinement {
   private:
     float light(VertexId v) const { return radiosity_.columns.luminance(radiosity_.irradiance[v]); }
 
-    // What counts is the sum over elements of error² × area: each may contribute the same.
+    // What counts is the sum over elements of error² × area: each may contribute the same, but no
+    // place may be very wrong.
     float tolerance(const Element& element) const {
-        return options_.tolerance * std::sqrt(std::max(1.0f, options_.area / element.area));
+        const float share = std::sqrt(options_.area / element.area);
+        return options_.tolerance * std::clamp(share, 1.0f, most_tolerant);
     }
 
     Corners corners_of(const Element& element) const {
@@ -100,9 +106,20 @@ class Refinement {
         return out;
     }
 
+    // A long element is judged by its length, within reason.
+    bool is_small(const Element& element) const {
+        if (element.area > options_.min_area) return false;
+        const auto corners = radiosity_.mesh.corners(element);
+        double longest = 0;
+        for (std::uint32_t i = 0; i < element.count; ++i)
+            longest = std::max(longest, length(corners[(i + 1) % element.count] - corners[i]));
+        const double square = std::min(longest * longest, longest_aspect * double(element.area));
+        return square <= 2 * double(options_.min_area);
+    }
+
     bool worth_testing(ElementId id) const {
         const Element& element = radiosity_.mesh[id];
-        if (element.area <= options_.min_area || element.level >= Mesh::max_level) return false;
+        if (is_small(element) || element.level >= Mesh::max_level) return false;
         if (!radiosity_.reflects(radiosity_.mesh.face_of(element))) return false;
         const Corners c = corners_of(element);
         // Covered at all corners, perhaps by different objects with light between them.

@@ -43,10 +43,6 @@ Shooting::Shooting(Radiosity& radiosity, const ShootingOptions& options)
     patch_unshot_.assign(mesh.patches().size() * stride, 0.0f);
     unshot_column_.assign(stride, 0.0);
     rho_area_.assign(stride, 0.0);
-    for (const Patch& patch : mesh.patches()) {
-        const auto rho = radiosity_.rho(mesh[patch.face]);
-        for (std::size_t c = 0; c < stride; ++c) rho_area_[c] += patch.area * double(rho[c]);
-    }
     // Before anything is lit: what an even distribution of the emission would give.
     mean_irradiance_ = radiosity_.area() > 0 ? radiosity_.emitted_flux() / radiosity_.area() : 0.0;
 }
@@ -74,6 +70,12 @@ std::vector<float> Shooting::overshoot() const {
     return options_.overshoot ? ambient() : std::vector<float>(radiosity_.columns.stride, 0.0f);
 }
 
+void Shooting::demand(double error, double min_area) {
+    options_.error = error;
+    options_.min_area = min_area;
+    refined_ = false;
+}
+
 Shooting::Brightest Shooting::brightest() const {
     const Mesh& mesh = radiosity_.mesh;
     const Columns& columns = radiosity_.columns;
@@ -83,7 +85,7 @@ Shooting::Brightest Shooting::brightest() const {
     for (std::size_t p = 0; p < mesh.patches().size(); ++p) {
         const Patch& patch = mesh.patches()[p];
         const auto rho = radiosity_.rho(mesh[patch.face]);
-        const auto area = static_cast<float>(patch.area);
+        const float area = patch_open_[p];
         for (std::size_t c = 0; c < columns.stride; ++c)
             flux[c] = patch_unshot_[p * columns.stride + c] + spread[c] * rho[c] * area;
         const float moved = columns.magnitude(flux);
@@ -186,7 +188,7 @@ void Shooting::weigh_patches() {
     weight_begin_.assign(1, 0);
     weight_vertex_.clear();
     weight_.clear();
-    open_area_ = 0;
+    patch_open_.assign(mesh.patches().size(), 0.0f);
     std::vector<Radiosity::Weight> mean;
     std::vector<std::pair<std::uint32_t, float>> sum;
     for (const Patch& patch : mesh.patches()) {
@@ -204,18 +206,24 @@ void Shooting::weigh_patches() {
                 weight_.push_back(0.0f);
             }
             weight_.back() += area;
-            open_area_ += static_cast<double>(area);
+            patch_open_[weight_begin_.size() - 1] += area;
         }
         weight_begin_.push_back(static_cast<std::uint32_t>(weight_.size()));
     }
     const std::size_t stride = radiosity_.columns.stride;
     std::fill(patch_shot_.begin(), patch_shot_.end(), 0.0f);
-    for (std::size_t p = 0; p < mesh.patches().size(); ++p)
+    std::fill(rho_area_.begin(), rho_area_.end(), 0.0);
+    open_area_ = 0;
+    for (std::size_t p = 0; p < mesh.patches().size(); ++p) {
+        const auto rho = radiosity_.rho(mesh[mesh.patches()[p].face]);
+        for (std::size_t c = 0; c < stride; ++c) rho_area_[c] += double(patch_open_[p] * rho[c]);
+        open_area_ += static_cast<double>(patch_open_[p]);
         mesh.for_leaves(mesh.patches()[p].root, [&](ElementId id) {
             const auto shot = radiosity_.shot[id];
             const float open = radiosity_.open_share(mesh[id]) * mesh[id].area;
             for (std::size_t c = 0; c < stride; ++c) patch_shot_[p * stride + c] += open * shot[c];
         });
+    }
 }
 
 namespace {
@@ -279,8 +287,9 @@ void Shooting::find_unshot() {
 
 std::vector<float> Shooting::ambient() const {
     std::vector<float> row(radiosity_.columns.stride, 0.0f);
+    if (open_area_ <= 0) return row;
     for (std::size_t c = 0; c < radiosity_.columns.count; ++c)
-        row[c] = static_cast<float>(unshot_column_[c] / (radiosity_.area() - rho_area_[c]));
+        row[c] = static_cast<float>(unshot_column_[c] / (open_area_ - rho_area_[c]));
     return row;
 }
 
@@ -296,9 +305,9 @@ double Shooting::unshot() const {
 double Shooting::enough() const {
     // Unshot flux u adds u / (1-ρ) / A to the irradiance in the end, most in the band that is
     // reflected most.
-    const double rho = *std::max_element(rho_area_.begin(), rho_area_.end()) / radiosity_.area();
     if (radiosity_.emitted_flux() <= 0) return 0.0;
-    return unshot_share * options_.error * mean_irradiance_ * radiosity_.area() * (1.0 - rho) /
+    const double most_reflected = *std::max_element(rho_area_.begin(), rho_area_.end());
+    return unshot_share * options_.error * mean_irradiance_ * (open_area_ - most_reflected) /
            radiosity_.emitted_flux();
 }
 

@@ -39,6 +39,10 @@ class Shooting final : public Solver {
     /// Luminance of irradiance far below the error asked for.
     float negligible() const { return 0.25f * tolerance(); }
 
+    /// Asks for more: the mesh is refined for `error` down to `min_area`, and what that changes is
+    /// shot.
+    void demand(double error, double min_area);
+
     std::uint64_t shots() const { return shots_; }
     std::uint64_t rays() const { return rays_; }
 
@@ -72,13 +76,14 @@ class Shooting final : public Solver {
     std::vector<std::uint32_t> weight_begin_, weight_vertex_;
     std::vector<float> weight_;
     std::size_t weighed_elements_ = 0;
+    std::vector<float> patch_open_;      ///< area of each that receives and sends
     std::vector<float> patch_shot_;      ///< reflected flux already shot: patches × columns
     std::vector<float> patch_unshot_;    ///< the rest of the reflected flux, signed
     double unshot_flux_ = 0;             ///< Σ of its magnitudes
     std::vector<double> unshot_column_;  ///< Σ over the patches, signed
-    std::vector<double> rho_area_;       ///< Σ A ρ per column
-    double open_area_ = 0;               ///< that receives and sends
-    double mean_irradiance_ = 0;         ///< luminance
+    std::vector<double> rho_area_;       ///< Σ A ρ per column, over the open area
+    double open_area_ = 0;
+    double mean_irradiance_ = 0;  ///< luminance
 
     Received received_;
     std::vector<std::uint32_t> everyone_;
