@@ -42,6 +42,10 @@ struct Photometry {
     LuminousOpening opening;
     std::optional<Vec3> housing;  ///< size of the luminaire along C0, C90, up, where told [m]
 
+    /// Where the measurement's own zero lies, which is what aiming turns to the target: nadir, but
+    /// C0 for the type A of vehicle lamps.
+    Vec3 forward{0, 0, -1};
+
     bool absolute = false;              ///< measured as a whole, not relative to bare lamps
     std::optional<double> lamp_lumens;  ///< of all lamps together [lm]; none if absolute
     std::optional<double> watts;        ///< input power [W]
