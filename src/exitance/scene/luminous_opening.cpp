@@ -70,7 +70,8 @@ std::vector<OpeningFacet> cylinder(const LuminousOpening& opening) {
                      y1 = r * std::sin(t1);
         body.add({place(0, 0, 1), place(x0, y0, 1), place(x1, y1, 1)});
         body.add({place(0, 0, -1), place(x1, y1, -1), place(x0, y0, -1)});
-        body.add({place(x0, y0, -1), place(x1, y1, -1), place(x1, y1, 1), place(x0, y0, 1)});
+        if (opening.sides_shine)
+            body.add({place(x0, y0, -1), place(x1, y1, -1), place(x1, y1, 1), place(x0, y0, 1)});
     }
     return body.facets;
 }

@@ -22,10 +22,11 @@ struct LuminousOpening {
         ellipsoid
     };
     Shape shape = Shape::point;
-    Vec3 size{};                    ///< whole extents along x, y, z [m]
-    std::uint32_t axis = 2;         ///< of a cylinder: 0 = x, 1 = y, 2 = z
-    bool sides_shine = true;        ///< false: `sides` says how high each side of a box shines
-    std::array<double, 4> sides{};  ///< heights on the sides to C0, C90, C180, C270 [m]
+    Vec3 size{};             ///< whole extents along x, y, z [m]
+    std::uint32_t axis = 2;  ///< of a cylinder: 0 = x, 1 = y, 2 = z
+    /// False: of a cylinder only the ends shine, and each side of a box as high as `sides` says.
+    bool sides_shine = true;
+    std::array<double, 4> sides{};  ///< heights from the bottom, to C0, C90, C180, C270 [m]
 
     /// Length of the diagonal [m]; 0 for a point.
     double extent() const { return shape == Shape::point ? 0 : length(size); }

@@ -144,8 +144,10 @@ std::vector<Problem> validate(const Scene& scene) {
         tell(problems, {}, "there are no polygons");
         return problems;
     }
+    const auto shines = [](const Luminaire& l) { return l.flux() > 0; };
     if (std::none_of(scene.polygons.begin(), scene.polygons.end(),
-                     [&](const Polygon& p) { return scene.material(p).emits(); }))
+                     [&](const Polygon& p) { return scene.material(p).emits(); }) &&
+        std::none_of(scene.luminaires.begin(), scene.luminaires.end(), shines))
         tell(problems, {}, "nothing emits light: the scene stays dark");
     if (!finite) return problems;
     const FaceOverlaps overlaps = find_overlaps(scene);
