@@ -82,6 +82,15 @@ void rotate_to_c_planes(Photometry& photometry, IesType type, const std::vector<
             planes[i].candela.push_back(look_up(verticals, columns, h, v));
         }
     }
+    // Half-spheres end at the horizon, sharply.
+    const auto dark_above = [&](const CPlane& plane) {
+        return std::all_of(plane.candela.begin() + static_cast<std::ptrdiff_t>(quarter) + 1,
+                           plane.candela.end(), [](double candela) { return candela == 0; });
+    };
+    if (std::all_of(planes.begin(), planes.end(), dark_above)) {
+        photometry.gammas.resize(quarter + 1);
+        for (CPlane& plane : planes) plane.candela.resize(quarter + 1);
+    }
     set_planes(photometry, std::move(planes), LampSymmetry::none);
     photometry.forward = direction_of(type, 0, 0);
 }
