@@ -131,7 +131,7 @@ TEST(Eulumdat, OneOfSeveralSetsOfLamps) {
     EXPECT_EQ(second.lamp, "large");
     EXPECT_EQ(second.watts, 130);
     EXPECT_NEAR(second.flux(), 2 * s.read().photometry.flux(), 1e-9);
-    expect_refused([&] { s.read(3); }, "t.ldt:26:1", "found 2 sets of lamps, there is no set 3");
+    expect_refused([&] { s.read(3); }, "t.ldt:26:1", "found 2 sets of lamps, expected a set 3");
 }
 
 TEST(Eulumdat, ANegativeNumberOfLampsIsAbsolutePhotometry) {

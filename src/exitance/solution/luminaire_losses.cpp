@@ -37,13 +37,14 @@ Lost follow(const Radiosity& radiosity, const LuminaireSource& source, std::size
             std::array<double, RayPacket::width> weight;
             for (std::size_t k = 0; k < RayPacket::width; ++k) {
                 const auto i = static_cast<std::uint32_t>(packet * RayPacket::width + k);
-                // Systematic over the cells of the table, sequences for the rest.
+                // Systematic over the cells of the table, a sequence for the direction; with a
+                // second one the place would hang together with it.
                 const double cell = (i + uniform(key, 0)) / static_cast<double>(rays);
                 const auto [u, v] = low_discrepancy(hash_bits(key, 1), i);
-                const auto [a, b] = low_discrepancy(hash_bits(key, 2), i);
                 const auto sample = directions.sample(cell, u, v);
                 const Vec3 d = luminaire.to_world(sample.direction);
-                const auto from = source.sample_along(d, a, b);
+                const std::uint64_t own = hash_bits(key, 2, i);
+                const auto from = source.sample_along(d, uniform(own, 0), uniform(own, 1));
                 weight[k] = sample.weight * from.weight;
                 const Vec3 origin = from.place + from.normal * clearance - middle;
                 p.origin_x[k] = static_cast<float>(origin.x);

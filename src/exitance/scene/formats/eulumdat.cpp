@@ -158,7 +158,8 @@ class EulumdatReader {
         const std::size_t sets = fields_.count("the number of sets of lamps", 1, 1e9);  // 26
         if (lamp_set_ < 1 || lamp_set_ > sets)
             throw Error(fields_.place(),
-                        fmt::format("found {} sets of lamps, there is no set {}", sets, lamp_set_));
+                        fmt::format("found {} of lamps, expected a set {}",
+                                    sets == 1 ? "1 set" : fmt::format("{} sets", sets), lamp_set_));
         out_.lamp_sets = static_cast<std::uint32_t>(sets);
         for (std::size_t set = 1; set <= sets; ++set) {
             const double lamps = fields_.number("the number of lamps", -1e6, 1e6);

@@ -133,28 +133,37 @@ void LuminaireReader::add_source(const TomlTable& table, const std::string& name
     if (table.flag("housing").value_or(false)) {
         const auto& size = luminaire.photometry->housing;
         if (!size) table.refuse("housing", "a file that says how large the luminaire is");
-        // It stands on the luminous body, and what shines upwards does so from its top.
-        Photometry housed = *luminaire.photometry;
-        const double luminous = housed.opening.extent() > 0 ? housed.opening.size.z : 0;
-        const double body = size->z > luminous ? size->z - luminous : size->z;
-        if (housed.opening.shape == LuminousOpening::Shape::point) {
-            housed.opening.shape = LuminousOpening::Shape::box;
-            housed.opening.size = {};
-        }
-        if (housed.opening.sides_shine) {
-            housed.opening.sides_shine = false;
-            housed.opening.sides.fill(luminous);
-        }
-        housed.opening.size.z = luminous + body;
-        luminaire.position -= luminaire.nadir * (body / 2);
-        add_housing(luminaire, {size->x, size->y, body}, luminous / 2);
-        luminaire.photometry = std::make_shared<const Photometry>(std::move(housed));
+        give_housing(luminaire, *size);
     }
     scene_.luminaires.push_back(std::move(luminaire));
 }
 
+// The housing stands on the luminous body, and what shines upwards does so from its top.
+void LuminaireReader::give_housing(Luminaire& luminaire, const Vec3& size) {
+    const LuminousOpening& plain = luminaire.photometry->opening;
+    const double luminous = plain.extent() > 0 ? plain.size.z : 0;
+    const double body = size.z > luminous ? size.z - luminous : size.z;
+    auto& housed = housed_[luminaire.photometry.get()];
+    if (!housed) {
+        Photometry made = *luminaire.photometry;
+        if (made.opening.shape == LuminousOpening::Shape::point) {
+            made.opening.shape = LuminousOpening::Shape::box;
+            made.opening.size = {};
+        }
+        if (made.opening.sides_shine) {
+            made.opening.sides_shine = false;
+            made.opening.sides.fill(luminous);
+        }
+        made.opening.size.z = luminous + body;
+        housed = std::make_shared<const Photometry>(std::move(made));
+    }
+    luminaire.photometry = housed;
+    luminaire.position -= luminaire.nadir * (body / 2);
+    add_box(luminaire, {size.x, size.y, body}, luminous / 2);
+}
+
 // A closed box around the luminaire's position, shifted up by `above`.
-void LuminaireReader::add_housing(const Luminaire& luminaire, const Vec3& size, double above) {
+void LuminaireReader::add_box(const Luminaire& luminaire, const Vec3& size, double above) {
     Material material;
     material.name = luminaire.name + " housing";
     material.place = luminaire.place;

@@ -32,11 +32,13 @@ class LuminaireReader {
     void add_area(const TomlTable& table, const std::string& name, const Vec3& position);
     void add_source(const TomlTable& table, const std::string& name, const Vec3& position);
     std::shared_ptr<const Photometry> photometry(const TomlTable& table);
-    void add_housing(const Luminaire& luminaire, const Vec3& size, double below);
+    void give_housing(Luminaire& luminaire, const Vec3& size);
+    void add_box(const Luminaire& luminaire, const Vec3& size, double above);
 
     Scene& scene_;
     std::filesystem::path folder_;
     std::map<std::string, std::shared_ptr<const Photometry>> files_;  ///< by path and set of lamps
+    std::map<const Photometry*, std::shared_ptr<const Photometry>> housed_;  ///< with a housing
 };
 
 }  // namespace exitance
