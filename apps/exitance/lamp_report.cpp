@@ -65,11 +65,11 @@ LampReport::LampReport(LampFile lamp, std::filesystem::path file)
 std::string LampReport::text() const {
     const Photometry& p = lamp_.photometry;
     const LampFigures& f = figures_;
-    std::string out =
-        fmt::format("{}\n{}: {}, {} C-planes × {} angles γ from {} to {}°\n\n",
-                    p.name.empty() ? file_.stem().string() : p.name, file_.string(), lamp_.format,
-                    p.planes.size() - (p.planes.size() > 1 ? 1 : 0), p.gammas.size(),
-                    human_number(p.gammas.front()), human_number(p.gammas.back()));
+    const std::size_t planes = p.planes.size() == 1 ? 1 : p.planes.size() - 1;
+    std::string out = fmt::format("{}\n{}: {}, {} C-plane{} × {} angles γ from {} to {}°\n\n",
+                                  p.name.empty() ? file_.stem().string() : p.name, file_.string(),
+                                  lamp_.format, planes, planes == 1 ? "" : "s", p.gammas.size(),
+                                  human_number(p.gammas.front()), human_number(p.gammas.back()));
     out += line("Maker", p.maker) + line("Catalogue", p.catalogue);
     std::string lamps = p.lamp;
     const auto say = [&](const std::string& what) { lamps += (lamps.empty() ? "" : ", ") + what; };

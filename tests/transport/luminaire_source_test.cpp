@@ -106,11 +106,13 @@ TEST(LuminaireSource, SamplesAverageToTheIrradiance) {
         const LuminaireSource lamp(hanging(crooked_photometry(opening), {0, 0, 2}));
         if (lamp.is_point()) continue;
         const Vec3 p{0.5, 0.2, 0.9}, n = normalized(Vec3{-0.2, 0.1, 1});
+        LuminaireSource::View view;
+        lamp.look(p, view);
         double sum = 0;
         constexpr std::uint32_t count = 1 << 14;
         for (std::uint32_t i = 0; i < count; ++i) {
             const auto [u, v] = low_discrepancy(3, i);
-            sum += lamp.sample(p, n, u, v).weight / count;
+            sum += lamp.sample(view, p, n, u, v).weight / count;
         }
         const double exact = lamp.irradiance(p, n);
         EXPECT_NEAR(sum, exact, 2e-3 * exact) << "shape " << int(opening.shape);

@@ -76,7 +76,7 @@ double LampTilt::factor(double degrees) const {
 
 double Photometry::intensity(const Vec3& d) const {
     // atan2 keeps its accuracy near the poles, where acos loses half of the digits.
-    const double gamma = std::atan2(std::hypot(d.x, d.y), -d.z) / degree;
+    const double gamma = std::atan2(std::sqrt(d.x * d.x + d.y * d.y), -d.z) / degree;
     return at(planes.size() == 1 ? 0.0 : std::atan2(d.y, d.x) / degree, gamma);
 }
 

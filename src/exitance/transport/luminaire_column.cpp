@@ -94,6 +94,7 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
         std::array<std::uint32_t, block> goal{}, most{};
         std::array<Vec3, block> points, normals;
         Rays packets(caster, options.occlusion);
+        LuminaireSource::View view;
         for (std::size_t i = 0; i < n; ++i) {
             const std::uint32_t r = which[begin + i];
             normals[i] = Vec3(Vec3f{receivers.nx[r], receivers.ny[r], receivers.nz[r]});
@@ -110,9 +111,10 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
                 Visibility& v = visible[i];
                 const std::uint64_t key =
                     hash_bits(options.seed, number, receivers.key[which[begin + i]]);
+                if (v.samples < goal[i]) source.look(points[i], view);
                 for (; v.samples < goal[i]; ++v.samples) {
                     const auto [a, b] = low_discrepancy(key, v.samples);
-                    const auto s = source.sample(points[i], normals[i], a, b);
+                    const auto s = source.sample(view, points[i], normals[i], a, b);
                     if (!(s.weight > 0)) continue;
                     packets.add(points[i] + normals[i] * clearance - middle,
                                 s.place + s.normal * clearance - middle, s.weight, v);

@@ -34,6 +34,13 @@ LuminaireSource::LuminaireSource(const Luminaire& luminaire) : luminaire_(lumina
         facets_.push_back(facet);
     };
     for (const OpeningFacet& facet : facets(opening)) add(facet, false);
+    for (const Facet& facet : facets_) {
+        auto same = std::find_if(planes_.begin(), planes_.end(), [&](const Plane& plane) {
+            return dot(plane.normal, facet.normal) > 1 - 1e-12;
+        });
+        if (same == planes_.end()) same = planes_.insert(same, {facet.normal, 0});
+        same->area += facet.area;
+    }
     if (!facets_.empty() || !(opening.extent() > 0)) return;
     // What has a length only shines as a line, evenly in all directions round it.
     OpeningFacet line;
@@ -54,7 +61,7 @@ double LuminaireSource::share(const Facet& facet, const Vec3& direction) const {
     const double facing = dot(facet.normal, direction);
     if (facing <= 0) return 0;
     double shown = 0;
-    for (const Facet& f : facets_) shown += f.area * std::max(0.0, dot(f.normal, direction));
+    for (const Plane& p : planes_) shown += p.area * std::max(0.0, dot(p.normal, direction));
     return facing / shown;
 }
 
@@ -114,44 +121,48 @@ double LuminaireSource::irradiance(const Vec3& point, const Vec3& normal) const 
     return sum;
 }
 
-template <class Weight>
-std::size_t LuminaireSource::choose(const Weight& weight, double& u, double& chance) const {
-    double total = 0;
-    for (const Facet& facet : facets_) total += weight(facet);
-    if (!(total > 0)) return facets_.size();
-    double below = 0, last_weight = 0;
-    std::size_t chosen = facets_.size();
-    for (std::size_t f = 0; f < facets_.size(); ++f) {
-        const double own = weight(facets_[f]);
-        if (own <= 0) continue;
-        chosen = f;
-        last_weight = own;
-        if (u * total < below + own) break;
-        below += own;
-    }
-    u = std::clamp((u * total - below) / last_weight, 0.0, 1 - 1e-12);
-    chance = last_weight / total;
-    return chosen;
+namespace {
+
+// The entry of cumulative weights that `u` falls into; `u` becomes the place within it, `chance`
+// its share.
+std::size_t choose(const std::vector<double>& cumulative, double& u, double& chance) {
+    const double total = cumulative.back();
+    auto chosen = std::upper_bound(cumulative.begin(), cumulative.end(), u * total);
+    while (chosen == cumulative.end() || (chosen != cumulative.begin() && *chosen == *(chosen - 1)))
+        --chosen;
+    const double below = chosen == cumulative.begin() ? 0.0 : *(chosen - 1);
+    u = std::clamp((u * total - below) / (*chosen - below), 0.0, 1 - 1e-12);
+    chance = (*chosen - below) / total;
+    return static_cast<std::size_t>(chosen - cumulative.begin());
 }
 
-LuminaireSource::Sample LuminaireSource::sample(const Vec3& point, const Vec3& normal, double u,
-                                                double v) const {
-    Sample out;
+}  // namespace
+
+void LuminaireSource::look(const Vec3& point, View& view) const {
+    view.cumulative.clear();
+    double sum = 0;
+    for (const Facet& facet : facets_) {
+        if (facet.is_line) {
+            sum += 1;
+        } else {
+            const Vec3 way = point - facet.middle;
+            const double facing = dot(facet.normal, way), square = dot(way, way);
+            if (facing > 0) sum += facet.area * facing / (square * std::sqrt(square));
+        }
+        view.cumulative.push_back(sum);
+    }
+}
+
+LuminaireSource::Sample LuminaireSource::sample(const View& view, const Vec3& point,
+                                                const Vec3& normal, double u, double v) const {
     if (facets_.empty()) {
         const bool below = dot(point - luminaire_.position, luminaire_.nadir) > 0;
         return {luminaire_.position, below ? luminaire_.nadir : -luminaire_.nadir, 1};
     }
+    if (!(view.cumulative.back() > 0)) return {};
     double chance = 1;
-    const std::size_t chosen = choose(
-        [&](const Facet& facet) {
-            if (facet.is_line) return 1.0;
-            const Vec3 way = point - facet.middle;
-            const double facing = dot(facet.normal, way);
-            return facing > 0 ? facet.area * facing / std::pow(dot(way, way), 1.5) : 0.0;
-        },
-        u, chance);
-    if (chosen == facets_.size()) return out;
-    const Facet& facet = facets_[chosen];
+    const Facet& facet = facets_[choose(view.cumulative, u, chance)];
+    Sample out;
     out.place = facet.at(u, v);
     out.normal = facet.is_line ? normalized(point - out.place) : facet.normal;
     out.weight = facet.jacobian(u, v) * kernel(facet, out.place, point, normal) / chance;
@@ -164,14 +175,13 @@ LuminaireSource::Sample LuminaireSource::sample_along(const Vec3& direction, dou
         const bool below = dot(direction, luminaire_.nadir) > 0;
         return {luminaire_.position, below ? luminaire_.nadir : -luminaire_.nadir, 1};
     }
-    double chance = 1;
-    const std::size_t chosen = choose(
-        [&](const Facet& facet) {
-            return facet.is_line ? 1.0 : facet.area * std::max(0.0, dot(facet.normal, direction));
-        },
-        u, chance);
-    if (chosen == facets_.size()) return {luminaire_.position, direction, 0};
-    const Facet& facet = facets_[chosen];
+    std::vector<double> cumulative;
+    double sum = 0, chance = 1;
+    for (const Facet& facet : facets_)
+        cumulative.push_back(
+            sum += facet.is_line ? 1.0 : facet.area * std::max(0.0, dot(facet.normal, direction)));
+    if (!(sum > 0)) return {luminaire_.position, direction, 0};
+    const Facet& facet = facets_[choose(cumulative, u, chance)];
     return {facet.at(u, v), facet.is_line ? direction : facet.normal,
             facet.jacobian(u, v) / facet.area};
 }

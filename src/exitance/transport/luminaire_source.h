@@ -25,8 +25,15 @@ class LuminaireSource {
         Vec3 place, normal;  ///< normal: to which side light leaves
         double weight = 0;   ///< of this place in the irradiance / density of the sample
     };
-    /// From (u, v) in [0, 1)². Facets are chosen in proportion to what they show of themselves.
-    Sample sample(const Vec3& point, const Vec3& normal, double u, double v) const;
+    /// How a receiver's samples are shared among the facets: in proportion to what they show of
+    /// themselves.
+    struct View {
+        std::vector<double> cumulative;  ///< per facet; empty for a point
+    };
+    void look(const Vec3& point, View& view) const;
+    /// From (u, v) in [0, 1)² and what look() found for the point.
+    Sample sample(const View& view, const Vec3& point, const Vec3& normal, double u,
+                  double v) const;
     /// Places in proportion to what the opening shows along `direction`, unit.
     Sample sample_along(const Vec3& direction, double u, double v) const;
 
@@ -49,11 +56,14 @@ class LuminaireSource {
     double kernel(const Facet& facet, const Vec3& q, const Vec3& point, const Vec3& normal) const;
     double integrate(const Facet& facet, const Vec3& point, const Vec3& normal, double s0,
                      double s1, double t0, double t1, int depth) const;
-    template <class Weight>
-    std::size_t choose(const Weight& weight, double& u, double& chance) const;
 
     Luminaire luminaire_;
     std::vector<Facet> facets_;
+    struct Plane {
+        Vec3 normal;
+        double area = 0;
+    };
+    std::vector<Plane> planes_;  ///< areas of the facets by their directions
 };
 
 }  // namespace exitance
