@@ -34,7 +34,7 @@ class InfoCommand {
         command
             .add_option("-o,--output", diagram_,
                         "of a luminaire: write its polar intensity diagram (.svg)")
-            ->type_name("FILE");
+            ->type_name("file.svg");
         command.add_flag("--json", json_, "the same as one JSON object");
         command.footer(
             "Lengths are in metres, areas in square metres; a reflectance is the share of light\n"
@@ -86,10 +86,9 @@ class InfoCommand {
 }  // namespace
 
 void add_info(CLI::App& app) {
-    CLI::App& command =
-        *app.add_subcommand("info",
-                            "what a file holds: sizes, materials, lamps, cameras, problems found; "
-                            "luminaires and their intensity diagrams");
+    CLI::App& command = *app.add_subcommand("info",
+                                            "what a file holds: sizes, materials, lamps, cameras, "
+                                            "problems; the diagram of a luminaire");
     const auto info = std::make_shared<InfoCommand>(command);
     command.callback([info] { info->run(); });
 }
