@@ -11,6 +11,7 @@
 
 #include "commands.h"
 #include "exitance/run/atomic_file.h"
+#include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/read.h"
 #include "exitance/scene/validate.h"
 #include "exitance/solution/file.h"
@@ -70,8 +71,8 @@ class InfoCommand {
         LampFile lamp = read_lamp_file(file_);
         if (diagram_) {
             const std::string& name = lamp.photometry.name;
-            const std::string svg =
-                polar_diagram(lamp.photometry, name.empty() ? file_.stem().string() : name);
+            const std::string svg = polar_diagram(
+                lamp.photometry, name.empty() ? as_utf8(file_.stem().string()) : name);
             write_atomically(*diagram_, [&](std::ostream& out) { out << svg; });
         }
         const LampReport report(std::move(lamp), file_);

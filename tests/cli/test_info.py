@@ -6,7 +6,7 @@ import re
 import unittest
 from xml.etree import ElementTree
 
-from program import BAD_INPUT, COULD_NOT_FINISH, WRONG_USE, ProgramTest, box
+from program import BAD_INPUT, COULD_NOT_FINISH, ROOT, WRONG_USE, ProgramTest, box
 
 LAMP = """
 quantity = "photometric"
@@ -125,12 +125,18 @@ group = "office"
         self.succeed("info", absolute, "-o", "absolute.svg")
         self.assertIn("rings: cd<", (self.folder / "absolute.svg").read_text())
 
+    def test_the_diagram_of_the_documents_is_what_the_program_draws(self):
+        self.succeed("info", ROOT / "scenes/lamps/pendant.ldt", "-o", "pendant.svg")
+        self.assertEqual((self.folder / "pendant.svg").read_text(),
+                         (ROOT / "docs/images/pendant.svg").read_text())
+
     def test_diagrams_that_cannot_be(self):
         lamp = self.write("lamp.ies", IES)
         self.refuse(WRONG_USE, "written as .svg", "info", lamp, "-o", "lamp.png")
         self.refuse(WRONG_USE, "needs an .ies or .ldt file", "info",
                     self.write("box.geom", box()), "-o", "box.svg")
         self.refuse(COULD_NOT_FINISH, "cannot write", "info", lamp, "-o", "gone/lamp.svg")
+        self.refuse(BAD_INPUT, r"lamp\.ies: a luminaire, not a scene", "solve", lamp, "-o", "o.glb")
         self.refuse(BAD_INPUT, r"bad\.ies:4:9: found 'many'", "info",
                     self.write("bad.ies", IES.replace("91 1 1", "many 1 1")))
 

@@ -37,6 +37,8 @@ TEST(Photometry, IntensitiesAreBilinearInTheAngles) {
     EXPECT_NEAR(p.at(370, 30), 0.5 * (p.candela[3] + p.candela[n + 3]), 1e-9);
     EXPECT_EQ(p.intensity(direction(40, 151)), 0) << "dark beyond the table";
     EXPECT_NEAR(p.intensity({0, 0, -1}), p.candela[0], 1e-9);
+    EXPECT_EQ(isotropic_photometry().intensity({0, 0, 1}), 1) << "the last angle belongs to it";
+    EXPECT_EQ(isotropic_photometry().intensity(normalized(Vec3{1e-17, 0, 1})), 1);
 }
 
 TEST(Photometry, FluxIsTheExactIntegralOfTheInterpolant) {

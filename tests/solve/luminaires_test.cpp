@@ -124,6 +124,18 @@ TEST(Luminaires, VerticesGatherAndPathTracerAgree) {
                 << "point " << p;
 }
 
+TEST(Luminaires, TheNumberOfThreadsDoesNotMatter) {
+    SolveOptions options;
+    options.error = 0.05;
+    options.threads = 1;
+    const Solution one = light(furnished_room(), options);
+    options.threads = 2;
+    const Solution two = light(furnished_room(), options);
+    EXPECT_TRUE(std::ranges::equal(one.irradiance.values(), two.irradiance.values()));
+    EXPECT_EQ(one.energy.escaped, two.energy.escaped);
+    EXPECT_EQ(one.error->rms, two.error->rms);
+}
+
 TEST(Luminaires, TheMeshFollowsTheirShadows) {
     SolveOptions options;
     const Solution adaptive = light(furnished_room(), options);

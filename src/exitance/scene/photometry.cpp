@@ -81,9 +81,10 @@ double Photometry::intensity(const Vec3& d) const {
 }
 
 double Photometry::at(double c, double gamma) const {
-    if (gamma < gammas.front() || gamma > gammas.back()) return 0;
+    constexpr double rounding = 1e-9;  // of angles that come from directions
+    if (gamma < gammas.front() - rounding || gamma > gammas.back() + rounding) return 0;
     const std::size_t n = gammas.size();
-    const auto [j, down] = find(gammas, gamma);
+    const auto [j, down] = find(gammas, std::clamp(gamma, gammas.front(), gammas.back()));
     const auto in_plane = [&, at = j, share = down](std::size_t i) {
         const double first = candela[i * n + at];
         return first + share * (candela[i * n + at + 1] - first);
