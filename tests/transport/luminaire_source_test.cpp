@@ -101,6 +101,29 @@ TEST(LuminaireSource, AnEvenPanelIsAPolygonWithItsFormFactor) {
     }
 }
 
+TEST(LuminaireSource, ANarrowBeamOfAWidePanelIsNotMissed) {
+    // 1° wide in steps of 0.1°: half a metre below the panel only the places above it shine there.
+    // A = 1 m²: E = ∫ I(θ) cosθ / r² dA = 2π ∫ I tanθ dθ in a parallel beam.
+    Photometry narrow;
+    narrow.planes = {0};
+    narrow.opening = testing::opening(LuminousOpening::Shape::box, {1, 1, 0});
+    double exact = 0;
+    constexpr double degree = std::numbers::pi / 180;
+    for (int i = 0; i <= 40; ++i) {
+        narrow.gammas.push_back(0.1 * i);
+        narrow.candela.push_back(1000 * std::exp(-std::numbers::ln2 * std::pow(0.2 * i, 2)));
+    }
+    for (int i = 0; i < 4000; ++i) {
+        const double theta = (i + 0.5) * 1e-3 * degree;
+        exact +=
+            2 * std::numbers::pi * narrow.at(0, theta / degree) * std::tan(theta) * 1e-3 * degree;
+    }
+    const LuminaireSource lamp(hanging(narrow, {0, 0, 2}));
+    for (const Vec3& p : {Vec3{0.1, 0.2, 1.5}, Vec3{0, 0, 1.9}, Vec3{-0.31, 0.17, 0}})
+        EXPECT_NEAR(lamp.irradiance(p, {0, 0, 1}), exact, 0.02 * exact) << p.z;
+    EXPECT_EQ(lamp.irradiance({0.6, 0, 1.5}, {0, 0, 1}), 0);
+}
+
 TEST(LuminaireSource, SamplesAverageToTheIrradiance) {
     for (const LuminousOpening& opening : all_openings()) {
         const LuminaireSource lamp(hanging(crooked_photometry(opening), {0, 0, 2}));

@@ -3,19 +3,40 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace exitance {
 
 namespace {
 
-// Cells of the opening are integrated by 2 × 2 Gauss points where they are smaller than this share
-// of their distance, and by their middle where they are far smaller.
-constexpr double near_share = 0.25, far_share = 0.02;
+// Cells of the opening are integrated by 2 × 2 Gauss points where they are smaller than a share of
+// their distance: a quarter of the beam, which must not slip between the points, within these.
+// Where they are far smaller their middle will do.
+constexpr double largest_share = 0.25, smallest_share = 0.01, far_share = 0.02;
 constexpr int deepest = 24;  // halvings
+
+// Angle over which the intensity is above half of its peak, in the half-plane of the peak [rad].
+double beam_width(const Photometry& p) {
+    const std::size_t n = p.gammas.size();
+    const auto peak = static_cast<std::size_t>(
+        std::max_element(p.candela.begin(), p.candela.end()) - p.candela.begin());
+    const double* row = &p.candela[peak / n * n];
+    std::size_t first = peak % n, last = first;
+    while (first > 0 && row[first - 1] > row[peak % n] / 2) --first;
+    while (last + 1 < n && row[last + 1] > row[peak % n] / 2) ++last;
+    // To the next angles on both sides; at a pole the other half-plane goes on.
+    const double from = p.gammas[first > 0 ? first - 1 : 0];
+    const double to = p.gammas[std::min(last + 1, n - 1)];
+    const bool at_pole = first == 0 || (last + 1 == n && p.gammas.back() > 179);
+    return (to - from) * (at_pole ? 2 : 1) * std::numbers::pi / 180;
+}
 
 }  // namespace
 
-LuminaireSource::LuminaireSource(const Luminaire& luminaire) : luminaire_(luminaire) {
+LuminaireSource::LuminaireSource(const Luminaire& luminaire)
+    : luminaire_(luminaire),
+      near_share_(
+          std::clamp(beam_width(*luminaire.photometry) / 4, smallest_share, largest_share)) {
     const LuminousOpening& opening = luminaire.photometry->opening;
     const auto add = [&](const OpeningFacet& from, bool line) {
         std::array<Vec3, 4> c;
@@ -83,7 +104,7 @@ double LuminaireSource::integrate(const Facet& facet, const Vec3& point, const V
     const double across = (t1 - t0) * length(facet.v + facet.uv * s);
     const double distance = length(facet.at(s, t) - point);
     const double longest = std::max(along, across);
-    if (longest > near_share * distance && depth < deepest) {
+    if (longest > near_share_ * distance && depth < deepest) {
         if (along >= across)
             return integrate(facet, point, normal, s0, s, t0, t1, depth + 1) +
                    integrate(facet, point, normal, s, s1, t0, t1, depth + 1);
@@ -91,7 +112,7 @@ double LuminaireSource::integrate(const Facet& facet, const Vec3& point, const V
                integrate(facet, point, normal, s0, s1, t, t1, depth + 1);
     }
     const double cell = (s1 - s0) * (t1 - t0);
-    if (longest < far_share * distance)
+    if (longest < std::min(far_share, near_share_ / 4) * distance)
         return cell * facet.jacobian(s, t) * kernel(facet, facet.at(s, t), point, normal);
     constexpr double gauss = 0.288675134594812882;  // 1 / (2 √3)
     double sum = 0;

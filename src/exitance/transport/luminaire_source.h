@@ -58,6 +58,7 @@ class LuminaireSource {
                      double s1, double t0, double t1, int depth) const;
 
     Luminaire luminaire_;
+    double near_share_ = 0;  ///< cells may be this large for their distance
     std::vector<Facet> facets_;
     struct Plane {
         Vec3 normal;
