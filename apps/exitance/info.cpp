@@ -6,11 +6,17 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <ostream>
 
 #include "commands.h"
+#include "exitance/run/atomic_file.h"
+#include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/read.h"
 #include "exitance/scene/validate.h"
 #include "exitance/solution/file.h"
+#include "lamp_report.h"
+#include "polar_diagram.h"
 #include "scene_report.h"
 
 namespace exitance::cli {
@@ -21,9 +27,15 @@ class InfoCommand {
   public:
     explicit InfoCommand(CLI::App& command) {
         command
-            .add_option("file", file_,
-                        "a scene (.toml, .glb, .gltf, .geom) or a solution (.glb that solve wrote)")
+            .add_option(
+                "file", file_,
+                "a scene (.toml, .glb, .gltf, .geom), a solution (.glb that solve wrote) or a "
+                "luminaire's photometry (.ies, .ldt)")
             ->required();
+        command
+            .add_option("-o,--output", diagram_,
+                        "of a luminaire: write its polar intensity diagram (.svg)")
+            ->type_name("file.svg");
         command.add_flag("--json", json_, "the same as one JSON object");
         command.footer(
             "Lengths are in metres, areas in square metres; a reflectance is the share of light\n"
@@ -31,10 +43,16 @@ class InfoCommand {
             "and blue. Problems found do not change the exit code.\n"
             "\n"
             "Example:\n"
-            "  exitance info scenes/cornell.toml");
+            "  exitance info scenes/cornell.toml\n"
+            "  exitance info downlight.ldt -o downlight.svg");
     }
 
     void run() const {
+        if (is_lamp_file(file_)) return lamp();
+        if (diagram_)
+            throw Error(Fault::wrong_use,
+                        "--output draws the intensities of a luminaire, which needs an .ies or "
+                        ".ldt file");
         if (is_solution(file_)) {
             const SolutionReport report(read_solution(file_), file_);
             std::fputs((json_ ? report.json() : report.text()).c_str(), stdout);
@@ -46,15 +64,32 @@ class InfoCommand {
     }
 
   private:
+    void lamp() const {
+        if (diagram_ && diagram_->extension() != ".svg")
+            throw Error(Fault::wrong_use,
+                        "diagrams are written as .svg, found '" + diagram_->string() + "'");
+        LampFile lamp = read_lamp_file(file_);
+        if (diagram_) {
+            const std::string& name = lamp.photometry.name;
+            const std::string svg = polar_diagram(
+                lamp.photometry, name.empty() ? as_utf8(file_.stem().string()) : name);
+            write_atomically(*diagram_, [&](std::ostream& out) { out << svg; });
+        }
+        const LampReport report(std::move(lamp), file_);
+        std::fputs((json_ ? report.json() : report.text()).c_str(), stdout);
+    }
+
     std::filesystem::path file_;
+    std::optional<std::filesystem::path> diagram_;
     bool json_ = false;
 };
 
 }  // namespace
 
 void add_info(CLI::App& app) {
-    CLI::App& command = *app.add_subcommand(
-        "info", "what a file holds: sizes, materials, lamps, cameras, problems found");
+    CLI::App& command = *app.add_subcommand("info",
+                                            "what a file holds: sizes, materials, lamps, cameras, "
+                                            "problems; the diagram of a luminaire");
     const auto info = std::make_shared<InfoCommand>(command);
     command.callback([info] { info->run(); });
 }

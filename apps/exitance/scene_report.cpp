@@ -54,7 +54,7 @@ SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
     problems_.insert(problems_.begin(), scene.warnings.begin(), scene.warnings.end());
     for (const Material& material : scene.materials) materials_.push_back({&material, 0, 0});
     const LightGroups groups = make_groups(scene, Grouping::file);
-    for (const LightGroup& group : groups.groups) groups_.push_back({group.name, 0, 0, 0});
+    for (const LightGroup& group : groups.groups) groups_.push_back({group.name, 0, 0, 0, 0});
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
         if (scene.materials[scene.surfaces[s].material].emits())
             ++groups_[groups.group_of_surface[s]].surfaces;
@@ -72,6 +72,13 @@ SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
         lamp.area += emitting;
         lamp.flux += flux;
         flux_ += flux;
+    }
+    for (std::size_t l = 0; l < scene.luminaires.size(); ++l) {
+        LampFacts& lamp = groups_[groups.group_of_luminaire[l]];
+        const double flux = scene.luminaires[l].flux();
+        lamp.flux += flux;
+        flux_ += flux;
+        ++lamp.luminaires;
     }
     bounds_ = scene.bounds();
 }
@@ -135,8 +142,13 @@ std::string SceneReport::light_text() const {
         if (i == most_lines)
             return out + fmt::format("  … and {} more\n", groups_.size() - most_lines);
         const LampFacts& g = groups_[i];
-        out += fmt::format("  {}: {} from {:.4g} m² of {}\n", g.name, human_quantity(g.flux, unit),
-                           g.area, plural(g.surfaces, "surface", "surfaces"));
+        std::string from;
+        if (g.surfaces > 0)
+            from =
+                fmt::format("{:.4g} m² of {}", g.area, plural(g.surfaces, "surface", "surfaces"));
+        if (g.luminaires > 0)
+            from += (from.empty() ? "" : " and ") + plural(g.luminaires, "luminaire", "luminaires");
+        out += fmt::format("  {}: {} from {}\n", g.name, human_quantity(g.flux, unit), from);
     }
     return out;
 }

@@ -22,7 +22,7 @@ struct MaterialFacts {
 struct LampFacts {
     std::string name;
     double area = 0, flux = 0;  ///< of both sides where both emit [m², flux_unit]
-    std::uint32_t surfaces = 0;
+    std::uint32_t surfaces = 0, luminaires = 0;
 };
 
 /// Refers to the scene it is given.

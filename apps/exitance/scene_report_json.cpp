@@ -91,7 +91,8 @@ std::string SceneReport::json() const {
             groups.push_back({{"name", group.name},
                               {"flux", group.flux},
                               {"area", group.area},
-                              {"surfaces", group.surfaces}});
+                              {"surfaces", group.surfaces},
+                              {"luminaires", group.luminaires}});
     out["cameras"] = json_of(scene_.cameras);
     out["grids"] = json_of(scene_.grids);
     Json& settings = out["settings"] = Json::object();

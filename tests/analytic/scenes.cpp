@@ -9,6 +9,7 @@
 #include <span>
 
 #include "analytic/configuration_factors.h"
+#include "analytic/luminaire_scenes.h"
 #include "exitance/math/polygon.h"
 #include "exitance/run/random.h"
 
@@ -371,16 +372,18 @@ void PrintTo(const Case& c, std::ostream* out) {
 }
 
 std::vector<Case> closed_form_cases() {
-    return {closed_box("closed_box", {1, 1, 1}),
-            closed_box("flat_box", {4, 1, 0.25}),
-            furnished_box(),
-            sheet_in_a_box(),
-            sphere(),
-            two_plates(),
-            parallel_plates(),
-            perpendicular_plates(),
-            tilted_lamp(),
-            occluded_square()};
+    std::vector<Case> cases{closed_box("closed_box", {1, 1, 1}),
+                            closed_box("flat_box", {4, 1, 0.25}),
+                            furnished_box(),
+                            sheet_in_a_box(),
+                            sphere(),
+                            two_plates(),
+                            parallel_plates(),
+                            perpendicular_plates(),
+                            tilted_lamp(),
+                            occluded_square()};
+    for (Case& c : luminaire_cases()) cases.push_back(std::move(c));
+    return cases;
 }
 
 }  // namespace exitance::analytic

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """exitance info: numbers that can be worked out by hand, and what becomes of bad files."""
 import json
+import math
+import re
 import unittest
+from xml.etree import ElementTree
 
-from program import BAD_INPUT, WRONG_USE, ProgramTest, box
+from program import BAD_INPUT, COULD_NOT_FINISH, ROOT, WRONG_USE, ProgramTest, box
 
 LAMP = """
 quantity = "photometric"
@@ -17,6 +20,15 @@ height = 0.4
 lumens = 3000
 group = "office"
 """
+
+# 100 cd cos γ from one lamp of 400 lm and 10 W.
+IES = """IESNA:LM-63-2002
+[LUMINAIRE] A downlight
+TILT=NONE
+1 400 1 91 1 1 2 -0.2 -0.2 0
+1 1 10
+""" + " ".join(map(str, range(91))) + "\n0\n" + "\n".join(
+    f"{100 * math.cos(math.radians(g)):.6f}" for g in range(91)) + "\n"
 
 
 class Info(ProgramTest):
@@ -55,6 +67,78 @@ class Info(ProgramTest):
         group, = self.facts(path)["groups"]
         self.assertEqual(group["name"], "office")
         self.assertAlmostEqual(group["flux"], 3000, places=9)
+
+    def test_luminaires_are_counted_with_their_flux(self):
+        self.write("lamp.ies", IES)
+        path = self.write("room.toml", LAMP + """
+[[luminaire]]
+name = "row"
+file = "lamp.ies"
+position = [0, 3, 0]
+columns = 3
+spacing = [2, 0]
+dimming = 0.5
+group = "office"
+""")
+        text = self.succeed("info", path).stdout
+        # 3 × half of the 100 π lm of 100 cd cos γ.
+        self.assertIn("office: 3471 lm from 0.2 m² of 1 surface and 3 luminaires", text)
+        group, = self.facts(path)["groups"]
+        self.assertEqual(group["luminaires"], 3)
+
+    def test_a_lamp_in_words(self):
+        path = self.write("lamp.ies", IES)
+        text = self.succeed("info", path).stdout
+        for line in [
+                "A downlight\n", "IES LM-63-2002, 1 C-plane × 91 angles γ from 0 to 90°",
+                "Flux      314.2 lm, 100.0 % below the horizontal", "LOR       78.5 %",
+                "Efficacy  31.42 lm/W", "Peak      100 cd at C0, γ 0°",
+                "Beam      120.0° × 120.0°", "Field     168.5° × 168.5°",
+                "Symmetry  rotational", "Opening   disc, 0.2 × 0.2 × 0 m"]:
+            self.assertIn(line, text)
+        facts = self.facts(path)
+        self.assertEqual(facts["kind"], "lamp")
+        self.assertAlmostEqual(facts["flux"], 100 * math.pi, delta=0.02)
+        self.assertAlmostEqual(facts["output_ratio"], 0.31415 / 0.4, delta=1e-4)
+        self.assertEqual(facts["problems"], [])
+
+    def test_the_diagram_of_a_lamp(self):
+        path = self.write("lamp.ies", IES)
+        self.succeed("info", path, "-o", "lamp.svg")
+        svg = ElementTree.parse(self.folder / "lamp.svg").getroot()
+        space = "{http://www.w3.org/2000/svg}"
+        self.assertEqual(svg.find(space + "title").text, "A downlight")
+        texts = ["".join(t.itertext()) for t in svg.iter(space + "text")]
+        for text in ["C180 – C0", "C270 – C90", "rings: cd/klm of the lamps", "0°", "90°", "250"]:
+            self.assertIn(text, texts)
+        self.assertNotIn("180°", texts, "the dark half is cut off")
+        # 100 cd cos γ is a circle of 250 cd/klm, the outermost ring of radius 200, whose lowest
+        # point is on it.
+        curves = [p.get("d") for p in svg.iter(space + "path") if p.get("d").endswith("Z")]
+        self.assertEqual(len(curves), 2)
+        for curve in curves:
+            points = [tuple(map(float, p.split())) for p in re.split("[ML]", curve[:-1]) if p]
+            self.assertAlmostEqual(max(y for _, y in points), 200, delta=0.1)
+            for x, y in points:
+                self.assertAlmostEqual(x * x + (y - 100) ** 2, 100 ** 2, delta=30)
+        absolute = self.write("absolute.ies", IES.replace("1 400 1", "1 -1 1"))
+        self.succeed("info", absolute, "-o", "absolute.svg")
+        self.assertIn("rings: cd<", (self.folder / "absolute.svg").read_text())
+
+    def test_the_diagram_of_the_documents_is_what_the_program_draws(self):
+        self.succeed("info", ROOT / "scenes/lamps/pendant.ldt", "-o", "pendant.svg")
+        self.assertEqual((self.folder / "pendant.svg").read_text(),
+                         (ROOT / "docs/images/pendant.svg").read_text())
+
+    def test_diagrams_that_cannot_be(self):
+        lamp = self.write("lamp.ies", IES)
+        self.refuse(WRONG_USE, "written as .svg", "info", lamp, "-o", "lamp.png")
+        self.refuse(WRONG_USE, "needs an .ies or .ldt file", "info",
+                    self.write("box.geom", box()), "-o", "box.svg")
+        self.refuse(COULD_NOT_FINISH, "cannot write", "info", lamp, "-o", "gone/lamp.svg")
+        self.refuse(BAD_INPUT, r"lamp\.ies: a luminaire, not a scene", "solve", lamp, "-o", "o.glb")
+        self.refuse(BAD_INPUT, r"bad\.ies:4:9: found 'many'", "info",
+                    self.write("bad.ies", IES.replace("91 1 1", "many 1 1")))
 
     def test_problems_are_told_with_their_place(self):
         scene = box(lamp=False).replace("color 0.5 0.5 0.5\n", "color 1 0.5 0.5\n", 1)

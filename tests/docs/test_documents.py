@@ -43,6 +43,17 @@ class Commands(unittest.TestCase):
     def test_a_wrong_command_is_noticed(self):
         self.assertNotEqual(run_block("exitance slove\necho fine\n").returncode, 0)
 
+    def test_tests_that_are_named_exist(self):
+        """`Suite.Name` in the tables of formats."""
+        cases = set()
+        for source in ROOT.glob("tests/**/*.cpp"):
+            cases.update(map(".".join, re.findall(
+                r"^(?:TEST|TEST_F|TEST_P|RC_GTEST_PROP)\((\w+), (\w+)",
+                source.read_text(encoding="utf-8"), re.MULTILINE)))
+        named = re.findall(r"`([A-Z]\w+\.[A-Z]\w+)`", DOCUMENTS[ROOT / "docs/formats.md"])
+        self.assertGreater(len(named), 20)
+        self.assertEqual(set(named) - cases, set())
+
     def test_make_targets_that_are_named_exist(self):
         targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(), re.MULTILINE))
         for document, text in DOCUMENTS.items():

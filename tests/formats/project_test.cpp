@@ -357,7 +357,8 @@ TEST(Project, ErrorsNameThePlaceAndWhatWasExpected) {
             "found 5 corners");
     refused("[1, 0, 1], [1, 0, 0]]", "[1, 0, \"a\"], [1, 0, 0]]", "23:41", "the string 'a'");
     refused("[1, 0, 1], [1, 0, 0]]", "[1, 0, 1e10], [1, 0, 0]]", "23:41", "a number");
-    refused("shape = \"disc\"", "shape = \"cube\"", "31:9", "rectangle, disc or sphere");
+    refused("shape = \"disc\"", "shape = \"cube\"", "31:9",
+            "rectangle, disc, sphere, point or spot");
     refused("radius = 0.1", "radius = 0", "34:10", "a number from 1e-09 up");
     refused("radius = 0.1", "width = 0.1", "29:1", "has no 'radius'");
     refused("aim = [0, -1, 0]", "aim = [0, 0, 0]", "33:7", "not the zero vector");

@@ -9,6 +9,7 @@
 #include "exitance/run/progress.h"
 #include "exitance/run/random.h"
 #include "exitance/scene/coplanar.h"
+#include "scene/lamps.h"
 #include "scene/small_scenes.h"
 
 namespace exitance {
@@ -42,6 +43,19 @@ TEST(Validate, FindsWhatIsMissing) {
     Scene dark = lamp_and_wall();
     dark.polygons.pop_back();
     EXPECT_TRUE(found(validate(dark), "stays dark"));
+}
+
+TEST(Validate, FindsLuminairesThatAreFarAway) {
+    Scene scene = lamp_and_wall();
+    scene.polygons.pop_back();
+    scene.luminaires.push_back(testing::hanging(testing::cosine_photometry(1), {0.5, 0.5, 1}));
+    EXPECT_TRUE(validate(scene).empty()) << "it lights the scene";
+    scene.luminaires.push_back(testing::hanging(testing::cosine_photometry(1), {500, 0, 0}));
+    scene.luminaires.back().place = {"p.toml", 9, 1};
+    const auto problems = validate(scene);
+    ASSERT_EQ(problems.size(), 1U);
+    EXPECT_EQ(problems[0].place.text(), "p.toml:9:1");
+    EXPECT_TRUE(found(problems, "'lamp' is far outside"));
 }
 
 TEST(Validate, FindsMaterialsThatKeepLightForEver) {

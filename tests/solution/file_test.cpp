@@ -10,6 +10,7 @@
 
 #include "exitance/run/error.h"
 #include "exitance/run/random.h"
+#include "scene/lamps.h"
 #include "solution/hand_made.h"
 
 namespace exitance {
@@ -290,6 +291,43 @@ std::string json_of(const std::string& whole) {
     std::uint32_t length = 0;
     std::memcpy(&length, whole.data() + 12, 4);
     return whole.substr(20, length);
+}
+
+TEST_F(SolutionFile, luminaires_come_back_as_they_were) {
+    Solution s = small_solution();
+    const auto opening = exitance::testing::opening(LuminousOpening::Shape::cylinder, {1, 2, 0.5});
+    for (int i = 0; i < 2; ++i)
+        s.luminaires.push_back({exitance::testing::hanging(
+                                    exitance::testing::crooked_photometry(opening), {1, 2, 3}, 0.3),
+                                1});
+    s.luminaires[1].luminaire.photometry = s.luminaires[0].luminaire.photometry;
+    write_solution(s, folder_ / "s.glb");
+    const std::string whole = bytes_of(folder_ / "s.glb"), sound = json_of(whole);
+    const Solution r = read_solution(folder_ / "s.glb");
+    ASSERT_EQ(r.luminaires.size(), 2u);
+    const Luminaire &a = r.luminaires[0].luminaire, &b = s.luminaires[0].luminaire;
+    EXPECT_EQ(r.luminaires[1].luminaire.photometry, a.photometry) << "kept once";
+    EXPECT_EQ(r.luminaires[0].group, 1u);
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.position, b.position);
+    EXPECT_EQ(a.nadir, b.nadir);
+    EXPECT_EQ(a.multiplier, b.multiplier);
+    EXPECT_EQ(a.colour, b.colour);
+    EXPECT_EQ(a.photometry->planes, b.photometry->planes);
+    EXPECT_EQ(a.photometry->candela, b.photometry->candela);
+    EXPECT_EQ(a.photometry->opening.shape, opening.shape);
+    EXPECT_EQ(a.photometry->opening.size, opening.size);
+    for (const auto& [from, to] :
+         {std::pair{"\"photometry\":0", "\"photometry\":7"},
+          std::pair{"\"gammas\":[0.0", "\"gammas\":[99.0"},
+          std::pair{"\"nadir\":[", "\"nadir\":[3,"}, std::pair{"\"candela\":[", "\"candela\":[-1,"},
+          std::pair{"\"axis\":2", "\"axis\":3"}, std::pair{"\"shape\":\"cyl", "\"shape\":\"col"}}) {
+        std::string json = sound;
+        ASSERT_NE(json.find(from), std::string::npos) << from;
+        json.replace(json.find(from), std::strlen(from), to);
+        std::ofstream(folder_ / "bad.glb", std::ios::binary) << with_json(whole, json);
+        EXPECT_THROW(read_solution(folder_ / "bad.glb"), Error) << to;
+    }
 }
 
 TEST_F(SolutionFile, hostile_json_is_refused) {

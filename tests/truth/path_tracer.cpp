@@ -86,7 +86,7 @@ struct PathTracer::Walk {
 
     std::span<double> weight_of(std::size_t lane) { return {&weight[lane * bands], bands}; }
 
-    enum Purpose : std::uint32_t { texel, light, direction, survival };
+    enum Purpose : std::uint32_t { texel, light, direction, survival, lamp = 1u << 20 };
 
     /// Two numbers in [0, 1) for `purpose` at this bounce: for the first bounces a point of an
     /// Owen-scrambled Sobol' set, shuffled so that the pairs of one path are independent (Burley
@@ -133,6 +133,102 @@ PathTracer::PathTracer(const Scene& scene, Grouping grouping)
     for (Emitter& emitter : emitters_) emitter.cumulative /= flux;
     for (Face& face : faces_)
         if (face.density > 0) face.density /= flux;
+    add_lamps(scene);
+}
+
+void PathTracer::add_lamps(const Scene& scene) {
+    double flux = 0;
+    for (std::size_t l = 0; l < scene.luminaires.size(); ++l) {
+        Lamp lamp;
+        lamp.luminaire = scene.luminaires[l];
+        lamp.group = groups_.group_of_luminaire[l];
+        lamp.cumulative = flux += lamp.luminaire.flux();
+        double area = 0;
+        for (const OpeningFacet& facet : facets(lamp.luminaire.photometry->opening)) {
+            std::array<Vec3, 4> c;
+            for (std::size_t i = 0; i < 4; ++i)
+                c[i] = lamp.luminaire.position + lamp.luminaire.to_world(facet.corners[i]);
+            const Vec3 n = lamp.luminaire.to_world(facet.normal);
+            for (std::uint32_t i = 2; i < facet.count; ++i) {
+                const Vec3 a = c[i - 1] - c[0], b = c[i] - c[0];
+                lamp.pieces.push_back({c[0], a, b, n, area += 0.5 * length(cross(a, b))});
+            }
+        }
+        lamps_.push_back(std::move(lamp));
+    }
+    for (Lamp& lamp : lamps_) lamp.cumulative /= flux;
+}
+
+/// One place of a luminaire per path. With A(ω) = Σ A (n·ω)⁺ the area that the opening shows along
+/// ω, the place sends I(ω) (n·ω)⁺ / A(ω) per area.
+void PathTracer::sample_lamps(Walk& walk, std::span<double> sums) const {
+    if (lamps_.empty()) return;
+    RayPacket rays{};
+    rays.near.fill(0.0f), rays.far.fill(1.0f);
+    std::array<const Lamp*, width> lamps{};
+    std::array<double, width> light{};
+    const Vec3 middle = caster_.middle();
+    for (std::size_t lane = 0; lane < width; ++lane) {
+        if (!(walk.active >> lane & 1u)) continue;
+        UnitSquare u = walk.numbers(Walk::lamp, lane);
+        const auto chosen =
+            std::min(std::upper_bound(lamps_.begin(), lamps_.end(), u[0],
+                                      [](double x, const Lamp& l) { return x < l.cumulative; }),
+                     lamps_.end() - 1);
+        const double below = chosen == lamps_.begin() ? 0.0 : (chosen - 1)->cumulative;
+        const double chance = chosen->cumulative - below;
+        u[0] = (u[0] - below) / chance;
+        const Luminaire& luminaire = chosen->luminaire;
+        Vec3 place = luminaire.position, normal{};
+        double area = 1;
+        if (!chosen->pieces.empty()) {
+            area = chosen->pieces.back().cumulative;
+            const auto piece = std::min(
+                std::upper_bound(chosen->pieces.begin(), chosen->pieces.end(), u[0] * area,
+                                 [](double x, const Lamp::Piece& p) { return x < p.cumulative; }),
+                chosen->pieces.end() - 1);
+            const double before = piece == chosen->pieces.begin() ? 0.0 : (piece - 1)->cumulative;
+            u[0] = (u[0] * area - before) / (piece->cumulative - before);
+            const auto [w0, w1, w2] = uniform_triangle(u);
+            place = piece->corner + piece->edge1 * w1 + piece->edge2 * w2;
+            normal = piece->normal;
+        } else if (luminaire.photometry->opening.extent() > 0) {
+            place += luminaire.to_world(luminaire.photometry->opening.size) * (u[0] - 0.5);
+        }
+        const Vec3 way = walk.position[lane] - place;
+        const double r2 = dot(way, way), r = std::sqrt(r2);
+        const Vec3 along = way / r;
+        const double cos_here = -dot(along, walk.normal[lane]);
+        if (cos_here <= 0) continue;
+        double share = 1;
+        if (!chosen->pieces.empty()) {
+            double shown = 0, before = 0;
+            for (const Lamp::Piece& p : chosen->pieces) {
+                shown += (p.cumulative - before) * std::max(0.0, dot(p.normal, along));
+                before = p.cumulative;
+            }
+            const double facing = dot(normal, along);
+            if (facing <= 0) continue;
+            share = area * facing / shown;
+        } else {
+            const double below_it = dot(along, luminaire.nadir);
+            normal = below_it > 0 ? luminaire.nadir : -luminaire.nadir;
+        }
+        light[lane] = luminaire.intensity(along) * share * cos_here / (r2 * chance);
+        if (!(light[lane] > 0)) continue;
+        lamps[lane] = &*chosen;
+        const Vec3 target = place + normal * caster_.clearance();
+        const Vec3f o(walk.position[lane] - middle), d(target - walk.position[lane]);
+        rays.origin_x[lane] = o.x, rays.origin_y[lane] = o.y, rays.origin_z[lane] = o.z;
+        rays.direction_x[lane] = d.x, rays.direction_y[lane] = d.y, rays.direction_z[lane] = d.z;
+        rays.active |= 1u << lane;
+    }
+    walk.rays += static_cast<std::uint64_t>(std::popcount(rays.active));
+    const std::uint32_t seen = rays.active & ~caster_.occluded(rays);
+    for (std::size_t lane = 0; lane < width; ++lane)
+        for (std::size_t b = 0; b < bands_ && (seen >> lane & 1u); ++b)
+            sums[lamps[lane]->group * bands_ + b] +=
+                walk.weight_of(lane)[b] * light[lane] * lamps[lane]->luminaire.colour[b];
 }
 
 /// Adds weight · M · k / (p + k): with k = cosθ cosθ' / π r² the density per emitter area of
@@ -283,6 +379,7 @@ Estimate PathTracer::irradiance(std::span<const Receiver> receivers, const Effor
                     }
                     while (walk.active) {
                         sample_lights(walk, replicate);
+                        sample_lamps(walk, replicate);
                         step(walk, replicate);
                     }
                 }

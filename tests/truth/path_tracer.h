@@ -54,7 +54,8 @@ struct Estimate {
 };
 
 /// Unbiased: cosine-distributed paths, at every vertex one point of an emitter chosen by flux,
-/// both combined by the balance heuristic (Veach & Guibas 1995), Russian roulette for faint paths.
+/// both combined by the balance heuristic (Veach & Guibas 1995), and one of a luminaire, which no
+/// direction hits; Russian roulette for faint paths.
 /// One-sided surfaces reflect and emit from the front only; their backs are black. The result does
 /// not depend on the number of threads.
 class PathTracer {
@@ -78,8 +79,21 @@ class PathTracer {
         std::uint32_t face = 0;
         double cumulative = 0;  ///< probability that this or an earlier triangle is chosen
     };
+    /// A luminaire with the triangles of its opening; none if it is a point or a line.
+    struct Lamp {
+        struct Piece {
+            Vec3 corner, edge1, edge2, normal;
+            double cumulative = 0;  ///< area of this and earlier pieces [m²]
+        };
+        Luminaire luminaire;
+        std::vector<Piece> pieces;
+        std::uint32_t group = 0;
+        double cumulative = 0;  ///< probability that this or an earlier lamp is chosen
+    };
     struct Walk;
 
+    void add_lamps(const Scene& scene);
+    void sample_lamps(Walk& walk, std::span<double> sums) const;
     void sample_lights(Walk& walk, std::span<double> sums) const;
     void step(Walk& walk, std::span<double> sums) const;
     void add_emission(const Face& face, bool front, double facing, double r2,
@@ -90,6 +104,7 @@ class PathTracer {
     std::vector<Material> materials_;
     std::vector<Face> faces_;
     std::vector<Emitter> emitters_;
+    std::vector<Lamp> lamps_;
     RayCaster caster_;
 };
 

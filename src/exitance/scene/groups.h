@@ -20,16 +20,17 @@ struct LightGroup {
 enum class Grouping {
     none,       ///< all light in one group
     luminaire,  ///< every lamp of the project, and every other emitting surface, by its own
-    material,   ///< one group per emitting material
+    material,   ///< one group per emitting material; luminaires, which have none, by name
     file        ///< as the file names them; emitters it does not name share the group "light"
 };
 
 struct LightGroups {
-    std::vector<LightGroup> groups;               ///< at least one
-    std::vector<std::uint32_t> group_of_surface;  ///< per Scene surface; 0 for what does not emit
+    std::vector<LightGroup> groups;                 ///< at least one
+    std::vector<std::uint32_t> group_of_surface;    ///< per Scene surface; 0 for what does not emit
+    std::vector<std::uint32_t> group_of_luminaire;  ///< per Scene luminaire
 };
 
-/// Groups in order of first appearance among the surfaces.
+/// Groups in order of first appearance among the surfaces, then the luminaires.
 LightGroups make_groups(const Scene& scene, Grouping grouping);
 
 }  // namespace exitance

@@ -5,16 +5,20 @@
 
 #include <cmath>
 #include <iterator>
+#include <memory>
 #include <utility>
+
+#include "exitance/scene/builtin_photometry.h"
 
 namespace exitance {
 
 namespace {
 
 void convert_emission(Scene& part, Quantity wanted) {
-    const Material* first = nullptr;
+    const Place* first = nullptr;
     for (const Material& material : part.materials)
-        if (!first && material.emits()) first = &material;
+        if (!first && material.emits()) first = &material.place;
+    if (!first && !part.luminaires.empty()) first = &part.luminaires.front().place;
     if (!first || part.quantity == wanted) return;
     double factor = 1;
     if (part.quantity == Quantity::photometric && wanted == Quantity::radiometric)
@@ -26,11 +30,21 @@ void convert_emission(Scene& part, Quantity wanted) {
         return unit.empty() ? std::string("numbers without a unit") : unit;
     };
     part.warnings.push_back(
-        {first->place,
-         fmt::format("emission in {} is taken as {}{}", name(part.quantity), name(wanted),
-                     factor == 1 ? "" : fmt::format(" at {} lm/W", luminous_efficacy))});
+        {*first, fmt::format("emission in {} is taken as {}{}", name(part.quantity), name(wanted),
+                             factor == 1 ? "" : fmt::format(" at {} lm/W", luminous_efficacy))});
     for (Material& material : part.materials)
         for (double& e : material.exitance) e *= factor;
+    for (Luminaire& luminaire : part.luminaires) luminaire.multiplier *= factor;
+}
+
+// Turned and moved; what shines keeps its own size and flux.
+void place(Luminaire& luminaire, const Transform& placing) {
+    luminaire.position = placing.point(luminaire.position);
+    luminaire.c0 = normalized(placing.vector(luminaire.c0));
+    const Vec3 nadir = placing.vector(luminaire.nadir);
+    luminaire.nadir = normalized(nadir - luminaire.c0 * dot(nadir, luminaire.c0));
+    if (placing.determinant() < 0)
+        luminaire.photometry = std::make_shared<const Photometry>(mirrored(*luminaire.photometry));
 }
 
 template <class T>
@@ -67,9 +81,11 @@ void merge(Scene& scene, Scene part, const Transform& placing) {
         grid.v = placing.vector(grid.v);
         grid.normal = normalized(placing.normal(grid.normal));
     }
+    for (Luminaire& luminaire : part.luminaires) place(luminaire, placing);
     append(scene.polygons, part.polygons);
     append(scene.surfaces, part.surfaces);
     append(scene.materials, part.materials);
+    append(scene.luminaires, part.luminaires);
     append(scene.cameras, part.cameras);
     append(scene.grids, part.grids);
     append(scene.settings, part.settings);

@@ -5,6 +5,7 @@
 
 #include "exitance/scene/formats/afit.h"
 #include "exitance/scene/formats/gltf.h"
+#include "exitance/scene/formats/lamp_file.h"
 #include "exitance/scene/formats/project.h"
 #include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/mend.h"
@@ -66,6 +67,9 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
         if (extension == ".geom" || looks_like_afit_geometry(bytes))
             return read_afit_with_display(path, bytes);
         if (looks_like_gltf(bytes)) return parse_gltf(path, bytes);
+        if (is_lamp_file(path))
+            throw Error({path.string(), 0, 0},
+                        "a luminaire, not a scene: a project (.toml) places it in one");
         throw Error({path.string(), 0, 0},
                     "not a scene that can be read, expected a project (.toml), glTF (.gltf, .glb) "
                     "or AFIT geometry (.geom)");

@@ -12,6 +12,7 @@
 #include "exitance/math/box.h"
 #include "exitance/math/vector.h"
 #include "exitance/run/error.h"
+#include "exitance/scene/luminaire.h"
 #include "exitance/scene/spectrum.h"
 
 namespace exitance {
@@ -102,6 +103,7 @@ struct Scene {
     std::vector<Polygon> polygons;
     std::vector<Surface> surfaces;
     std::vector<Material> materials;
+    std::vector<Luminaire> luminaires;  ///< lamps without geometry
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;
     std::vector<Setting> settings;  ///< from [solve] of a project file

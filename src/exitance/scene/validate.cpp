@@ -17,6 +17,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t most_of_a_kind = 20;  // surfaces or pairs of them that are named one by one
+constexpr double far_away = 10;  // from the scene, in its diagonals: millimetres taken for metres
 
 Place place_of(const Scene& scene, const Polygon& polygon) {
     const Surface& surface = scene.surfaces[polygon.surface];
@@ -134,6 +135,22 @@ void report_pairs(const Scene& scene, const std::vector<FacePair>& pairs, const 
     }
 }
 
+void check_luminaires(const Scene& scene, std::vector<Problem>& problems) {
+    const Box bounds = scene.bounds();
+    std::size_t told = 0, outside = 0;
+    for (const Luminaire& luminaire : scene.luminaires) {
+        const Vec3& p = luminaire.position;
+        const Vec3 inside = max(bounds.lower, min(bounds.upper, p));
+        if (length(p - inside) <= far_away * bounds.diagonal()) continue;
+        ++outside;
+        if (told++ < most_of_a_kind)
+            tell(problems, luminaire.place,
+                 fmt::format("the luminaire '{}' is far outside of the scene", luminaire.name));
+    }
+    if (outside > most_of_a_kind)
+        tell(problems, {}, fmt::format("… and so are {} more", outside - most_of_a_kind));
+}
+
 }  // namespace
 
 std::vector<Problem> validate(const Scene& scene) {
@@ -144,10 +161,13 @@ std::vector<Problem> validate(const Scene& scene) {
         tell(problems, {}, "there are no polygons");
         return problems;
     }
+    const auto shines = [](const Luminaire& l) { return l.flux() > 0; };
     if (std::none_of(scene.polygons.begin(), scene.polygons.end(),
-                     [&](const Polygon& p) { return scene.material(p).emits(); }))
+                     [&](const Polygon& p) { return scene.material(p).emits(); }) &&
+        std::none_of(scene.luminaires.begin(), scene.luminaires.end(), shines))
         tell(problems, {}, "nothing emits light: the scene stays dark");
     if (!finite) return problems;
+    check_luminaires(scene, problems);
     const FaceOverlaps overlaps = find_overlaps(scene);
     report_pairs(scene, overlaps.duplicates, "lie in the same place", problems);
     report_pairs(scene, overlaps.overlaps, "overlap in one plane, facing the same way", problems);

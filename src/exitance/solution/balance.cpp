@@ -10,6 +10,7 @@
 #include "exitance/math/warp.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/solution/luminaire_losses.h"
 
 namespace exitance {
 
@@ -141,10 +142,13 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
             send(radiosity.shot[id], open < 1.0);
         });
     }
+    const LuminaireLosses losses = luminaire_losses(radiosity, hash_bits(seed, 0x1a55u));
+    out.escaped = losses.escaped;
+    out.absorbed_behind = losses.behind;
     if (senders.empty()) return out;
     const Lost lost = follow(radiosity, senders, cumulative, hash_bits(seed, 0xba1u));
-    out.escaped = lost.escaped;
-    out.absorbed_behind = lost.behind;
+    out.escaped += lost.escaped;
+    out.absorbed_behind += lost.behind;
     return out;
 }
 

@@ -231,6 +231,8 @@ Solution extract_solution(const Radiosity& radiosity) {
     out.bands = scene.bands;
     out.groups = radiosity.groups.groups;
     out.materials = scene.materials;
+    for (std::size_t l = 0; l < scene.luminaires.size(); ++l)
+        out.luminaires.push_back({scene.luminaires[l], radiosity.groups.group_of_luminaire[l]});
     out.cameras = scene.cameras;
     out.grids = scene.grids;
     out.scene_digest = digest(scene);
@@ -252,6 +254,18 @@ std::string digest(const Scene& scene) {
         for (const double r : material.reflectance) number(r);
         for (const double e : material.exitance) number(e);
         add(material.two_sided);
+    }
+    for (const Luminaire& luminaire : scene.luminaires) {
+        for (const Vec3& v : {luminaire.position, luminaire.c0, luminaire.nadir})
+            number(v.x), number(v.y), number(v.z);
+        number(luminaire.multiplier);
+        for (const double c : luminaire.colour) number(c);
+        for (const double angle : luminaire.photometry->planes) number(angle);
+        for (const double angle : luminaire.photometry->gammas) number(angle);
+        for (const double candela : luminaire.photometry->candela) number(candela);
+        const LuminousOpening& opening = luminaire.photometry->opening;
+        add(static_cast<std::uint64_t>(opening.shape));
+        number(opening.size.x), number(opening.size.y), number(opening.size.z);
     }
     return fmt::format("{:016x}", h);
 }

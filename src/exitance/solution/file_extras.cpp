@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exitance/solution/file_layout.h"
+#include "exitance/solution/file_luminaires.h"
 
 namespace exitance::solution_file {
 
@@ -110,6 +111,7 @@ json extras_of(const Solution& s) {
         out["error"] = {{"rms", s.error->rms},
                         {"confidence", s.error->confidence},
                         {"points", s.error->points}};
+    add_luminaires(out, s);
     return out;
 }
 
@@ -224,6 +226,7 @@ void read_extras(const Node& extras, Solution& s) {
     const Node cameras = extras["cameras"], grids = extras["grids"];
     for (std::size_t i = 0; i < cameras.size(); ++i) s.cameras.push_back(read_camera(cameras[i]));
     for (std::size_t i = 0; i < grids.size(); ++i) s.grids.push_back(read_grid(grids[i]));
+    read_luminaires(extras, s);
 }
 
 Material read_material(const Node& node, std::size_t bands) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// E(x) = Σ_emitters E_j F_xj V_xj + ∫ (B − E) cosθ/π dω.
+// E(x) = Σ_emitters E_j F_xj V_xj + Σ_luminaires E_l V_l + ∫ (B − E) cosθ/π dω.
 #include "exitance/solution/gather.h"
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "exitance/math/warp.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/transport/luminaire_column.h"
 #include "exitance/visibility/visible_fraction.h"
 
 namespace exitance {
@@ -47,7 +48,10 @@ class Gatherer {
           s_(surfaces.solution()),
           points_(points),
           out_(columns),
-          options_(options) {}
+          options_(options) {
+        for (const SolutionLuminaire& placed : s_.luminaires)
+            luminaires_.emplace_back(placed.luminaire);
+    }
 
     void block(std::size_t begin, std::size_t end) const {
         std::fill(out_.begin() + std::ptrdiff_t(begin * s_.columns()),
@@ -62,6 +66,7 @@ class Gatherer {
     std::span<const GatherPoint> points_;
     std::span<double> out_;
     const GatherOptions& options_;
+    std::vector<LuminaireSource> luminaires_;
 
     std::span<double> row(std::size_t point) const {
         return out_.subspan(point * s_.columns(), s_.columns());
@@ -78,6 +83,7 @@ class Gatherer {
                 points_[i].normal, static_cast<std::uint32_t>(hash_bits(options_.seed, i)));
         std::vector<std::uint32_t> order(n);
         std::iota(order.begin(), order.end(), 0u);
+        add_luminaires(begin, receivers, order);
         ReceiverBlock block;
         block.load(receivers, order.data(), n);
 
@@ -105,6 +111,52 @@ class Gatherer {
                     columns[part.group * E.size() + b] += E[b] * factor[i] * visible[i];
             }
         }
+    }
+
+    void add_luminaires(std::size_t begin, const Receivers& receivers,
+                        std::span<const std::uint32_t> which) const {
+        const std::size_t bands = s_.bands.size();
+        for (std::size_t l = 0; l < luminaires_.size(); ++l) {
+            const std::vector<double> light =
+                received_light(luminaires_[l], static_cast<std::uint32_t>(l), receivers, which);
+            const SolutionLuminaire& placed = s_.luminaires[l];
+            for (std::size_t i = 0; i < which.size(); ++i)
+                for (std::size_t b = 0; b < bands; ++b)
+                    row(begin + i)[placed.group * bands + b] +=
+                        light[i] * placed.luminaire.colour[b];
+        }
+    }
+
+    /// Light from luminaire `l` for a colour of 1: all receivers once, and rounds with fresh
+    /// patterns for those that see it partly.
+    std::vector<double> received_light(const LuminaireSource& source, std::uint32_t l,
+                                       const Receivers& receivers,
+                                       std::span<const std::uint32_t> which) const {
+        constexpr std::uint32_t rays_of_round = 256;
+        ColumnOptions options;
+        std::vector<ColumnEntry> entries(which.size());
+        std::vector<double> sum(which.size(), 0.0);
+        std::vector<std::uint32_t> open(which.begin(), which.end()), partly;
+        const std::uint32_t rounds =
+            std::max(1u, (options_.emitter_rays + rays_of_round - 1) / rays_of_round);
+        // A tolerance that asks for all rays of a round wherever there is a penumbra.
+        constexpr double tolerance = 1e-30;
+        for (std::uint32_t round = 0; round < rounds && !open.empty(); ++round) {
+            options.seed = hash_bits(options_.seed, round);
+            entries.resize(open.size());
+            compute_luminaire_column(surfaces_.caster(), source, tolerance,
+                                     static_cast<std::uint32_t>(hash_bits(0x1abULL, l)), receivers,
+                                     open, options, entries);
+            partly.clear();
+            for (std::size_t i = 0; i < open.size(); ++i) {
+                const bool whole = round == 0 && entries[i].deviation == 0;
+                sum[open[i]] += double(entries[i].received()) * (whole ? rounds : 1);
+                if (!whole) partly.push_back(open[i]);
+            }
+            open = partly;
+        }
+        for (double& value : sum) value /= rounds;
+        return sum;
     }
 
     /// Visible share of the factor to emitter `e`: a probe of each point that it reaches, then

@@ -23,7 +23,8 @@ struct GatherOptions {
 };
 
 /// Irradiance at each point, `columns` = points × solution columns [irradiance_unit]. Emission
-/// comes from Solution::emitters by the exact factor times their visible share; reflected light
+/// comes from Solution::emitters by the exact factor, and from its luminaires, times their visible
+/// share; reflected light
 /// from rays over the hemisphere that look B − E up where they hit. Backs of one-sided surfaces
 /// are black (`surfaces` must be made with Backs::black); rays that miss bring nothing.
 void gather(const Surfaces& surfaces, std::span<const GatherPoint> points,

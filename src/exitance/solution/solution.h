@@ -55,6 +55,12 @@ struct Emitter {
     std::uint32_t part = 0;  ///< its material and group
 };
 
+/// A luminaire of the input and the light group that it shines in.
+struct SolutionLuminaire {
+    Luminaire luminaire;
+    std::uint32_t group = 0;
+};
+
 struct Solution {
     std::string title;
     Quantity quantity = Quantity::unitless;
@@ -68,6 +74,7 @@ struct Solution {
     std::vector<SolutionPart> parts;                      ///< cover `triangles` in order
     std::vector<Material> materials;
     std::vector<Emitter> emitters;
+    std::vector<SolutionLuminaire> luminaires;
 
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;

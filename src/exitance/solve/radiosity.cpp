@@ -52,6 +52,7 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
       columns(groups.groups, scene.bands.size()),
       caster(make_caster(scene)),
       owners(scene, caster),
+      luminaires(scene.luminaires.begin(), scene.luminaires.end()),
       mesh(scene, mesh_options),
       irradiance(0, columns.count),
       shot(0, columns.count) {
@@ -65,6 +66,15 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
         for (std::size_t b = 0; b < columns.bands; ++b)
             emitted_[s * columns.stride + groups.group_of_surface[s] * columns.bands + b] =
                 static_cast<float>(scene.materials[scene.surfaces[s].material].exitance[b]);
+    emitted_by_luminaire_.assign(luminaires.size() * columns.stride, 0.0f);
+    for (std::size_t l = 0; l < luminaires.size(); ++l) {
+        for (std::size_t b = 0; b < columns.bands; ++b)
+            emitted_by_luminaire_[l * columns.stride +
+                                  groups.group_of_luminaire[l] * columns.bands + b] =
+                static_cast<float>(scene.luminaires[l].colour[b]);
+        emitted_flux_ += scene.luminaires[l].flux() *
+                         static_cast<double>(columns.luminance(emitted_by_luminaire(l)));
+    }
     for (const Polygon& p : scene.polygons) two_sided_.push_back(scene.material(p).two_sided);
 
     for (const Face& face : mesh.faces()) {
@@ -86,6 +96,10 @@ std::span<const float> Radiosity::rho(VertexId vertex) const {
 
 std::span<const float> Radiosity::emitted(const Face& face) const {
     return {&emitted_[face.surface * columns.stride], columns.stride};
+}
+
+std::span<const float> Radiosity::emitted_by_luminaire(std::size_t luminaire) const {
+    return {&emitted_by_luminaire_[luminaire * columns.stride], columns.stride};
 }
 
 bool Radiosity::emits(const Face& face) const {

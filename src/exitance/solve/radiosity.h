@@ -11,6 +11,7 @@
 #include "exitance/mesh/mesh.h"
 #include "exitance/scene/groups.h"
 #include "exitance/scene/scene.h"
+#include "exitance/transport/luminaire_source.h"
 #include "exitance/visibility/place_owners.h"
 #include "exitance/visibility/ray_caster.h"
 #include "exitance/visibility/receivers.h"
@@ -39,6 +40,7 @@ class Radiosity {
     Columns columns;
     RayCaster caster;
     PlaceOwners owners;
+    std::vector<LuminaireSource> luminaires;  ///< emit, and are not in the mesh
     Mesh mesh;
 
     Receivers receivers;        ///< one per vertex
@@ -55,6 +57,8 @@ class Radiosity {
     std::span<const float> rho(const Face& face) const;
     std::span<const float> rho(VertexId vertex) const;
     std::span<const float> emitted(const Face& face) const;
+    /// What a luminaire emits per column, for an intensity of 1: its colour in its group.
+    std::span<const float> emitted_by_luminaire(std::size_t luminaire) const;
     bool emits(const Face& face) const;
     bool reflects(const Face& face) const;
 
@@ -91,8 +95,9 @@ class Radiosity {
     std::size_t bytes() const;
 
   private:
-    std::vector<float> rho_;      ///< material × stride
-    std::vector<float> emitted_;  ///< surface × stride
+    std::vector<float> rho_;                   ///< material × stride
+    std::vector<float> emitted_;               ///< surface × stride
+    std::vector<float> emitted_by_luminaire_;  ///< luminaire × stride
     std::vector<char> two_sided_;
     double area_ = 0, emitted_flux_ = 0;
 };

@@ -8,6 +8,7 @@
 
 #include "exitance/math/polygon.h"
 #include "exitance/run/parallel.h"
+#include "exitance/solve/luminaire_light.h"
 
 namespace exitance {
 
@@ -109,6 +110,7 @@ std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& receive
     };
     std::uint64_t rays = 0;
     for (const FaceId face : emitters_) rays += cast(emission_of(radiosity_, face));
+    rays += cast_luminaires(radiosity_, receivers, which, tolerance(), options_.column, received);
     received.note_seen();
     const Columns& columns = radiosity_.columns;
     for (std::size_t p = 0; p < radiosity_.mesh.patches().size(); ++p)
@@ -120,7 +122,7 @@ std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& receive
 void Shooting::shoot_emission() {
     received_.reset(radiosity_.receivers.size(), radiosity_.columns.stride);
     rays_ += illuminate(radiosity_.receivers, received_);
-    shots_ += emitters_.size();
+    shots_ += emitters_.size() + radiosity_.luminaires.size();
     deliver(received_);
     radiosity_.seen = received_.seen;
     find_unshot();

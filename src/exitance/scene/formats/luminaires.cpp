@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "exitance/scene/formats/limits.h"
+#include "exitance/scene/formats/luminaire_keys.h"
 #include "exitance/scene/formats/luminaire_shapes.h"
 #include "exitance/scene/formats/toml_direction.h"
 
@@ -12,31 +13,33 @@ namespace exitance {
 namespace {
 
 // Returns the area that emits [m²].
-double lamp_shape(Scene& scene, std::uint32_t surface, const TomlTable& table) {
+double lamp_shape(Scene& scene, std::uint32_t surface, const TomlTable& table,
+                  const Vec3& position) {
     const std::string shape = *table.text("shape");
-    const Vec3 position = *table.vector("position");
+    refuse_keys(
+        table, shape,
+        {"file", "lamp_set", "lamp_lumens", "candela", "beam", "field", "rotation", "housing"});
     const auto sizes = [&](const std::vector<std::string>& needed,
                            const std::vector<std::string>& unused) {
         for (const std::string& key : needed) table.require(key);
-        for (const std::string& key : unused)
-            if (table.has(key))
-                throw Error(table.place(key), fmt::format("a {} has no '{}'", shape, key));
+        refuse_keys(table, shape, unused);
     };
     const auto size = [&](const char* key) {
         return *table.number(key, limits::length, limits::coordinate);
     };
     if (shape == "rectangle") {
-        sizes({"aim", "width", "height"}, {"radius"});
-        const Vec3 aim = direction(table, "aim", {});
+        sizes({"width", "height"}, {"radius"});
+        const Vec3 aim = lamp_aim(table, position, std::nullopt);
         return add_rectangle(scene, surface, position, aim, up_beside(table, aim), size("width"),
                              size("height"));
     }
     if (shape == "disc") {
-        sizes({"aim", "radius"}, {"width", "height", "up"});
-        return add_disc(scene, surface, position, direction(table, "aim", {}), size("radius"));
+        sizes({"radius"}, {"width", "height", "up"});
+        return add_disc(scene, surface, position, lamp_aim(table, position, std::nullopt),
+                        size("radius"));
     }
-    if (shape != "sphere") table.refuse("shape", "rectangle, disc or sphere");
-    sizes({"radius"}, {"width", "height", "aim", "up"});
+    if (shape != "sphere") table.refuse("shape", "rectangle, disc, sphere, point or spot");
+    sizes({"radius"}, {"width", "height", "aim", "target", "up"});
     return add_sphere(scene, surface, position, size("radius"));
 }
 
@@ -47,21 +50,23 @@ Spectrum lamp_exitance(const TomlTable& table, double area) {
         throw Error(table.place(), fmt::format("found {} of 'lumens', 'watts' and 'exitance', "
                                                "expected one",
                                                given == 0 ? "none" : "several"));
-    Spectrum colour = table.spectrum("color", 0, limits::exitance).value_or(Spectrum(3, 1.0));
-    const double value = luminance(colour);
-    if (!(value > limits::length)) table.refuse("color", "a colour that is not black");
+    const Spectrum colour = lamp_colour(table);
     Spectrum exitance(3, 1.0);
     if (table.has("exitance")) {
-        if (table.is_array("exitance") && table.has("color"))
-            throw Error(table.place("color"),
-                        "found 'color' beside an exitance per band, expected one of them");
+        for (const char* key : {"color", "color_temperature"})
+            if (table.is_array("exitance") && table.has(key))
+                throw Error(table.place(key),
+                            fmt::format("found '{}' beside an exitance per band, expected one of "
+                                        "them",
+                                        key));
         exitance = *table.spectrum("exitance", 0, limits::exitance);
     } else {
         const char* key = table.has("lumens") ? "lumens" : "watts";
         exitance.assign(3, *table.number(key, 0, limits::exitance) / area);
     }
+    const double factor = lamp_factor(table);
     for (std::size_t b = 0; b < 3; ++b) {
-        exitance[b] *= colour[b] / value;
+        exitance[b] *= colour[b] * factor;
         if (!(exitance[b] <= limits::exitance))
             throw Error(table.place(),
                         fmt::format("found the exitance {:g} in this luminaire, expected at most "
@@ -74,25 +79,68 @@ Spectrum lamp_exitance(const TomlTable& table, double area) {
 }  // namespace
 
 std::vector<std::string> luminaire_keys() {
-    return {"name",   "shape",  "position", "aim",      "up",    "width", "height",
-            "radius", "lumens", "watts",    "exitance", "color", "group"};
+    return {"name",
+            "shape",
+            "file",
+            "position",
+            "aim",
+            "target",
+            "up",
+            "rotation",
+            "width",
+            "height",
+            "radius",
+            "beam",
+            "field",
+            "lumens",
+            "watts",
+            "exitance",
+            "candela",
+            "lamp_lumens",
+            "lamp_set",
+            "multiplier",
+            "dimming",
+            "color",
+            "maintenance",
+            "color_temperature",
+            "group",
+            "columns",
+            "rows",
+            "spacing",
+            "array_rotation",
+            "housing"};
 }
 
-void add_luminaire(Scene& scene, const TomlTable& table) {
-    for (const char* key : {"name", "shape", "position"}) table.require(key);
+void LuminaireReader::add(const TomlTable& table) {
+    for (const char* key : {"name", "position"}) table.require(key);
+    if (!table.has("file")) table.require("shape");
+    if (table.has("file") && table.has("shape"))
+        throw Error(table.place("shape"), "found both 'file' and 'shape', expected one of them");
+    const std::string shape = table.text("shape").value_or("");
+    const bool source = table.has("file") || shape == "point" || shape == "spot";
+    const std::string name = *table.text("name");
+    const std::vector<Vec3> positions = lamp_positions(table);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const std::string own = positions.size() == 1 ? name : fmt::format("{} {}", name, i + 1);
+        source ? add_source(table, own, positions[i]) : add_area(table, own, positions[i]);
+    }
+}
+
+void LuminaireReader::add_area(const TomlTable& table, const std::string& name,
+                               const Vec3& position) {
     Material material;
-    material.name = *table.text("name");
+    material.name = name;
     material.place = table.place();
     material.reflectance.assign(3, 0.0);
     material.exitance.assign(3, 0.0);
-    // Without a group of its own choice a lamp is its own group.
-    material.group = table.text("group").value_or(material.name);
-    const std::uint32_t made = scene.add_material(std::move(material));
-    const std::uint32_t surface = scene.add_surface(scene.materials[made].name, made);
-    scene.surfaces[surface].luminaire = true;
-    scene.surfaces[surface].place = table.place();
-    const double area = lamp_shape(scene, surface, table);
-    scene.materials[made].exitance = lamp_exitance(table, area);
+    // Without a group of its own choice a lamp is its own group, and an array of them is one.
+    material.group = table.text("group").value_or(*table.text("name"));
+    const std::uint32_t made = scene_.add_material(std::move(material));
+    const std::uint32_t surface = scene_.add_surface(scene_.materials[made].name, made);
+    scene_.surfaces[surface].luminaire = true;
+    scene_.surfaces[surface].place = table.place();
+    const double area = lamp_shape(scene_, surface, table, position);
+    scene_.materials[made].exitance = lamp_exitance(table, area);
 }
 
 }  // namespace exitance

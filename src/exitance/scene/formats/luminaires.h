@@ -2,9 +2,13 @@
 // [[luminaire]] of a lighting project.
 #pragma once
 
+#include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "exitance/scene/formats/lamp_file.h"
 #include "exitance/scene/formats/toml_table.h"
 #include "exitance/scene/scene.h"
 
@@ -13,7 +17,28 @@ namespace exitance {
 /// The keys that a [[luminaire]] may have.
 std::vector<std::string> luminaire_keys();
 
-/// Adds one lamp as a material and a surface of its own. Throws Error(bad_input).
-void add_luminaire(Scene& scene, const TomlTable& table);
+/// Adds the lamps of a project: those with an area as a material and a surface of their own, those
+/// with a photometric file, points and spots as luminaires.
+class LuminaireReader {
+  public:
+    /// Files are looked up in `folder`.
+    LuminaireReader(Scene& scene, std::filesystem::path folder)
+        : scene_(scene), folder_(std::move(folder)) {}
+
+    /// One table: a lamp, or rows and columns of it. Throws Error(bad_input).
+    void add(const TomlTable& table);
+
+  private:
+    void add_area(const TomlTable& table, const std::string& name, const Vec3& position);
+    void add_source(const TomlTable& table, const std::string& name, const Vec3& position);
+    std::shared_ptr<const Photometry> photometry(const TomlTable& table);
+    void give_housing(Luminaire& luminaire, const Vec3& size);
+    void add_box(const Luminaire& luminaire, const Vec3& size, double above);
+
+    Scene& scene_;
+    std::filesystem::path folder_;
+    std::map<std::string, std::shared_ptr<const Photometry>> files_;  ///< by path and set of lamps
+    std::map<const Photometry*, std::shared_ptr<const Photometry>> housed_;  ///< with a housing
+};
 
 }  // namespace exitance

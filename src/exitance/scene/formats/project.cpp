@@ -66,7 +66,8 @@ class ProjectReader {
         for (const TomlTable& table :
              root_.tables("polygon", {"corners", "material", "patches", "name"}))
             polygon(table);
-        for (const TomlTable& table : luminaires) add_luminaire(scene_, table);
+        LuminaireReader lamps(scene_, path_.parent_path());
+        for (const TomlTable& table : luminaires) lamps.add(table);
         for (const TomlTable& table :
              root_.tables("camera", {"name", "eye", "look_at", "up", "fov", "aspect"}))
             camera(table);
@@ -153,7 +154,8 @@ class ProjectReader {
         quantity_ = given_quantity();
         for (const TomlTable& table : materials) demand(table, "luminance", Quantity::photometric);
         for (const TomlTable& table : luminaires) {
-            demand(table, "lumens", Quantity::photometric);
+            for (const char* key : {"lumens", "lamp_lumens", "candela", "file"})
+                demand(table, key, Quantity::photometric);
             demand(table, "watts", Quantity::radiometric);
         }
         for (const Part& part : parts)
