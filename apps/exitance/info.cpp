@@ -11,6 +11,7 @@
 #include "exitance/scene/read.h"
 #include "exitance/scene/validate.h"
 #include "exitance/solution/file.h"
+#include "options_cli.h"
 #include "scene_report.h"
 
 namespace exitance::cli {
@@ -19,10 +20,13 @@ namespace {
 
 class InfoCommand {
   public:
-    explicit InfoCommand(CLI::App& command) {
+    explicit InfoCommand(CLI::App& command)
+        : reading_(command, "Reading a scene", describe(read_options_)) {
         command
-            .add_option("file", file_,
-                        "a scene (.toml, .glb, .gltf, .geom) or a solution (.glb that solve wrote)")
+            .add_option(
+                "file", file_,
+                "a scene (.toml, .glb, .gltf, .mgf, .rad, .geom) or a solution (.glb that solve "
+                "wrote)")
             ->required();
         command.add_flag("--json", json_, "the same as one JSON object");
         command.footer(
@@ -34,18 +38,21 @@ class InfoCommand {
             "  exitance info scenes/cornell.toml");
     }
 
-    void run() const {
+    void run() {
+        reading_.apply({});
         if (is_solution(file_)) {
             const SolutionReport report(read_solution(file_), file_);
             std::fputs((json_ ? report.json() : report.text()).c_str(), stdout);
         } else {
-            const Scene scene = read_scene(file_);
+            const Scene scene = read_scene(file_, read_options_);
             const SceneReport report(scene, validate(scene), file_);
             std::fputs((json_ ? report.json() : report.text()).c_str(), stdout);
         }
     }
 
   private:
+    ReadOptions read_options_;
+    GivenOptions reading_;
     std::filesystem::path file_;
     bool json_ = false;
 };
