@@ -162,7 +162,8 @@ std::string SceneReport::problems_text() const {
         if (i == most_lines)
             return out + fmt::format("  … and {} more\n", problems_.size() - most_lines);
         const std::string place = problems_[i].place.text();
-        out += fmt::format("  {}{}{}\n", place, place.empty() ? "" : ": ", problems_[i].what);
+        out += fmt::format("  {}. {}{}{}\n", i + 1, place, place.empty() ? "" : ": ",
+                           problems_[i].what);
     }
     return out;
 }

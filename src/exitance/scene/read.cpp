@@ -9,6 +9,7 @@
 #include "exitance/scene/formats/gltf.h"
 #include "exitance/scene/formats/mgf.h"
 #include "exitance/scene/formats/project.h"
+#include "exitance/scene/formats/rad.h"
 #include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/mend.h"
 
@@ -75,6 +76,7 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
                                  });
         if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes);
         if (extension == ".mgf") return parse_mgf(path, std::move(bytes), options);
+        if (extension == ".rad") return parse_rad(path, std::move(bytes), options);
         if (extension == ".geom" || looks_like_afit_geometry(bytes))
             return read_afit_with_display(path, bytes);
         if (looks_like_gltf(bytes)) return parse_gltf(path, bytes);
