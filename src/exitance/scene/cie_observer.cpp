@@ -40,7 +40,7 @@ std::array<double, 3> observed(double wavelength) {
     return out;
 }
 
-// Midpoints of 1 nm: no spectrum that people measure is finer.
+// Longest step [nm] of the midpoint rule: no spectrum that people measure is finer.
 constexpr double integration_step = 1;
 
 using Matrix = std::array<std::array<double, 3>, 3>;
@@ -79,16 +79,31 @@ Xyz xyz_of_chromaticity(double x, double y) {
     return {x / y, 1, (1 - x - y) / y};
 }
 
-Xyz xyz_of_spectrum(const SampledSpectrum& spectrum) {
+namespace {
+
+std::array<double, 3> integral(const SampledSpectrum& spectrum) {
     std::array<double, 3> sum{};
-    for (double w = observer_first + integration_step / 2; w < observer_last;
-         w += integration_step) {
+    const double from = std::max(observer_first, spectrum.first);
+    const double to = std::min(observer_last, spectrum.last);
+    if (!(to > from)) return sum;
+    const int steps = std::max(64, static_cast<int>(std::ceil((to - from) / integration_step)));
+    for (int i = 0; i < steps; ++i) {
+        const double w = from + (to - from) * (i + 0.5) / steps;
         const double value = spectrum.at(w);
         const auto seen = observed(w);
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += seen[k] * value;
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += seen[k] * value * (to - from) / steps;
     }
+    return sum;
+}
+
+}  // namespace
+
+Xyz xyz_of_spectrum(const SampledSpectrum& spectrum) {
+    const auto sum = integral(spectrum);
     if (!(sum[1] > 0)) return {};
-    return {sum[0] / sum[1], 1, sum[2] / sum[1]};
+    // The three functions have the same area (CIE 15:2004); their four digits are nearly so.
+    const auto white = integral({observer_first, observer_last, {1, 1}});
+    return {sum[0] / sum[1] * white[1] / white[0], 1, sum[2] / sum[1] * white[1] / white[2]};
 }
 
 SampledSpectrum black_body(double kelvin) {

@@ -31,7 +31,8 @@ class MgfReader {
     MgfReader(const std::filesystem::path& path, std::string text, const ReadOptions& options)
         : options_(options),
           files_(path, std::move(text), options),
-          collector_(scene_, options, warnings_) {}
+          budget_(options),
+          collector_(scene_, options, budget_, warnings_) {}
 
     Scene read() {
         read_file(files_.current());
@@ -93,8 +94,7 @@ class MgfReader {
     }
 
     void read_line() {
-        lines_read_ += lines_->passed();
-        if (lines_read_ > options_.max_lines) too_many_lines();
+        budget_.spend_lines(lines_->passed(), [&] { return lines_->place(0); });
         if (lines_->length() > longest_line && !warnings_.seen("long line"))
             warn("long line", fmt::format("a line of {} characters, MGF allows {}",
                                           lines_->length(), longest_line));
@@ -134,12 +134,6 @@ class MgfReader {
         const auto value = finite_number(words[i]);
         if (!value || *value < least || *value > most) refuse(i, what);
         return *value;
-    }
-    [[noreturn]] void too_many_lines() const {
-        throw Error(lines_->place(0),
-                    fmt::format("more than {} lines, those of arrays and included files as often "
-                                "as they count; --max-lines raises the limit",
-                                options_.max_lines));
     }
 
     // Contexts.
@@ -283,24 +277,22 @@ class MgfReader {
     void expect_repetitions() {
         // Checked on the first copy of all; from then on they count as they come.
         constexpr std::uint64_t countless = std::uint64_t{1} << 62;
-        repetitions_ = 1;
+        std::uint64_t times = 1;
         for (const Moving& moving : movings_) {
             if (moving.index > 0) {
-                repetitions_ = 1;
+                times = 1;
                 break;
             }
-            repetitions_ =
-                moving.copies > countless / repetitions_ ? countless : repetitions_ * moving.copies;
+            times = moving.copies > countless / times ? countless : times * moving.copies;
         }
-        collector_.expect_repetitions(repetitions_);
+        budget_.expect_repetitions(times);
     }
     void open(const SimilarityArguments& arguments) {
         if (movings_.size() >= 1000)
             throw Error(lines_->place(0), "found 'xf' within 'xf' more than 1000 deep");
         movings_.push_back({arguments, arguments.copies(), 0, placing_, lines_->mark()});
         expect_repetitions();
-        // Every copy has a line at least.
-        if (repetitions_ > options_.max_lines) too_many_lines();
+        budget_.spend_lines(0, [&] { return lines_->place(0); });
         placing_ = placing_.after(arguments.copy(0));
         ++naming_;
     }
@@ -440,7 +432,7 @@ class MgfReader {
     template <class Make>
     void add(std::uint64_t count, bool inward, const Make& make) {
         start_geometry();
-        collector_.reserve(count, lines_->line_place());
+        budget_.spend_polygons(count, [&] { return lines_->line_place(); });
         Facets facets = make(collector_.facets_per_turn());
         if (inward) facets.turn_round();
         collector_.add_facets(facets, placing_, lines_->line_place());
@@ -531,9 +523,9 @@ class MgfReader {
     IncludeFiles files_;
     Scene scene_;
     ReadWarnings warnings_;
+    ReadBudget budget_;
     PolygonCollector collector_;
     MgfLines* lines_ = nullptr;
-    std::uint64_t lines_read_ = 0;
     bool known_anything_ = false;
 
     MgfContexts<MgfColour> colours_;
@@ -551,7 +543,6 @@ class MgfReader {
     std::vector<Moving> movings_;
     std::size_t file_objects_ = 0, file_movings_ = 0;  // open before the current file
     Transform placing_;
-    std::uint64_t repetitions_ = 1;
     // The surface that is being added to, and whether the object has changed since.
     std::uint64_t naming_ = 0, named_ = 0, surface_stamp_ = 0;
     bool started_ = false;

@@ -79,14 +79,6 @@ void PolygonCollector::start_surface(const std::string& name, std::uint32_t mate
     surface_ = surface_of(name, material, place);
 }
 
-void PolygonCollector::reserve(std::uint64_t count, const Place& place) const {
-    const std::uint64_t most = options_.max_polygons, now = scene_.polygons.size();
-    if (now + count <= most && count * repetitions_ <= most - now && repetitions_ <= most) return;
-    throw Error(place, fmt::format("this makes more than {} polygons; --max-polygons raises the "
-                                   "limit",
-                                   most));
-}
-
 void PolygonCollector::add_polygon(std::span<const Corner> corners, std::uint32_t surface,
                                    const Place& place) {
     Polygon polygon;
@@ -113,7 +105,7 @@ void PolygonCollector::add_outline(std::vector<Corner> corners, const Place& pla
                           "over a box's corner");
     }
     if (corners.size() == 3 || (corners.size() == 4 && is_convex(points))) {
-        reserve(1, place);
+        budget_.spend_polygons(1, [&] { return place; });
         add_polygon(corners, surface_, place);
         return;
     }
@@ -124,7 +116,6 @@ void PolygonCollector::add_outline(std::vector<Corner> corners, const Place& pla
                       fmt::format("the {} corners of a face are not in one plane; it is made of "
                                   "triangles as seen along its mean normal",
                                   corners.size()));
-    reserve(corners.size() - 2, place);
     const Triangulation cut = triangulate(points);
     if (!cut.simple && !warnings_.seen("crossed"))
         warnings_.add("crossed", place,
@@ -133,6 +124,7 @@ void PolygonCollector::add_outline(std::vector<Corner> corners, const Place& pla
                                   corners.size()));
     if (cut.triangles.empty() && !warnings_.seen("no area"))
         warnings_.add("no area", place, "a face has no area and is left out");
+    budget_.spend_polygons(cut.triangles.size(), [&] { return place; });
     for (const auto& triangle : cut.triangles) {
         std::array<Corner, 3> three;
         for (std::size_t i = 0; i < 3; ++i) three[i] = corners[triangle[i]];
@@ -169,7 +161,6 @@ void PolygonCollector::add_face_with_holes(const std::vector<std::vector<Corner>
 
 void PolygonCollector::add_facets(const Facets& facets, const Transform& placing,
                                   const Place& place) {
-    reserve(facets.polygons.size(), place);
     std::uint32_t surface = surface_;
     if (scene_.materials[material_].emits()) {
         // Four digits tell shapes apart, and rounding errors not.

@@ -12,6 +12,7 @@
 
 #include "exitance/math/transform.h"
 #include "exitance/scene/formats/curved_primitives.h"
+#include "exitance/scene/formats/read_budget.h"
 #include "exitance/scene/formats/read_warnings.h"
 #include "exitance/scene/read_options.h"
 #include "exitance/scene/scene.h"
@@ -25,14 +26,12 @@ struct Corner {
 class PolygonCollector {
   public:
     /// Adds to `scene`.
-    PolygonCollector(Scene& scene, const ReadOptions& options, ReadWarnings& warnings)
-        : scene_(scene), options_(options), warnings_(warnings) {}
+    PolygonCollector(Scene& scene, const ReadOptions& options, ReadBudget& budget,
+                     ReadWarnings& warnings)
+        : scene_(scene), options_(options), budget_(budget), warnings_(warnings) {}
 
     /// What is added from now on belongs to the surface of this name and material.
     void start_surface(const std::string& name, std::uint32_t material, const Place& place);
-    /// What is added from now on will be repeated in all this often: limits are checked for all
-    /// repetitions before the first.
-    void expect_repetitions(std::uint64_t times) { repetitions_ = times; }
 
     /// A face of three corners or more, planar as far as its file is exact; `place` is where it
     /// was declared. Shading normals count for smoothness only, never for the side; those more
@@ -41,13 +40,12 @@ class PolygonCollector {
     /// loops[0] with holes.
     void add_face_with_holes(const std::vector<std::vector<Corner>>& loops,
                              const Transform& placing, const Place& place);
-    /// Facets of a curved body. Facets that emit do so a little more than their material, so that
+    /// Facets of a curved body; the budget for them has been spent, before they were made. Facets
+    /// that emit do so a little more than their material, so that
     /// the flux is that of the true surface.
     void add_facets(const Facets& facets, const Transform& placing, const Place& place);
 
     std::uint32_t facets_per_turn() const { return exitance::facets_per_turn(options_.tolerance); }
-    /// Throws Error at `place` if `count` more polygons, repeated as expected, exceed the limit.
-    void reserve(std::uint64_t count, const Place& place) const;
 
   private:
     struct PointHash {
@@ -60,8 +58,8 @@ class PolygonCollector {
 
     Scene& scene_;
     const ReadOptions& options_;
+    ReadBudget& budget_;
     ReadWarnings& warnings_;
-    std::uint64_t repetitions_ = 1;
     std::string name_;
     std::uint32_t material_ = 0, surface_ = 0;
     Place surface_place_;

@@ -33,7 +33,8 @@ class RadReader {
     RadReader(const std::filesystem::path& path, std::string text, const ReadOptions& options)
         : options_(options),
           files_(path, std::move(text), options),
-          collector_(scene_, options, warnings_) {}
+          budget_(options),
+          collector_(scene_, options, budget_, warnings_) {}
 
     Scene read() {
         RadTokens tokens(files_.current(), std::nullopt);
@@ -72,11 +73,7 @@ class RadReader {
             } else {
                 add(primitive(tokens));
             }
-            if (++statements_ > options_.max_lines)
-                throw Error(tokens.place(),
-                            fmt::format("more than {} statements, those of arrays and files as "
-                                        "often as they count; --max-lines raises the limit",
-                                        options_.max_lines));
+            budget_.spend_lines(1, [&] { return tokens.place(); });
         }
     }
 
@@ -285,7 +282,7 @@ class RadReader {
             inward ^= p.reals[i] < 0;
             return std::abs(p.reals[i]);
         };
-        collector_.reserve(sphere ? sphere_facet_count(n) : n, p.place);
+        budget_.spend_polygons(sphere ? sphere_facet_count(n) : n, [&] { return p.place; });
         Facets facets;
         if (sphere) {
             const double r = radius(3);
@@ -350,11 +347,8 @@ class RadReader {
             repetitions_ = !first_of_all || i > 0             ? 0
                            : copies > countless / repetitions ? countless
                                                               : repetitions * copies;
-            if (repetitions_ > options_.max_lines)
-                throw Error(place, fmt::format("more than {} copies in arrays; --max-lines raises "
-                                               "the limit",
-                                               options_.max_lines));
-            collector_.expect_repetitions(std::max<std::uint64_t>(1, repetitions_));
+            budget_.expect_repetitions(std::max<std::uint64_t>(1, repetitions_));
+            budget_.spend_lines(0, [&] { return place; });
             placing_ = outer.after(xform.arguments.copy(i));
             if (xform.arguments.is_array()) {
                 std::string indices;
@@ -367,13 +361,14 @@ class RadReader {
         movings_.pop_back();
         placing_ = outer;
         repetitions_ = repetitions;
-        collector_.expect_repetitions(std::max<std::uint64_t>(1, repetitions_));
+        budget_.expect_repetitions(std::max<std::uint64_t>(1, repetitions_));
     }
 
     const ReadOptions& options_;
     IncludeFiles files_;
     Scene scene_;
     ReadWarnings warnings_;
+    ReadBudget budget_;
     PolygonCollector collector_;
     std::unordered_map<std::string, Modifier> modifiers_;
     std::unordered_map<std::string, std::vector<Defined>> defined_;
@@ -381,7 +376,6 @@ class RadReader {
     std::vector<Moving> movings_;
     Transform placing_;
     std::uint64_t repetitions_ = 1;  // of what is read now; 0 = not the first copy of all
-    std::uint64_t statements_ = 0;
 };
 
 }  // namespace
