@@ -61,9 +61,10 @@ std::string read_whole_file(const std::filesystem::path& path, std::uint64_t mos
     const std::streamoff size = file.tellg();
     if (size < 0) throw Error(place, "the file cannot be read");
     if (static_cast<std::uint64_t>(size) > most)
-        throw Error(place, fmt::format("the file has {} bytes, more than {}; --max-file-size raises "
-                                       "the limit",
-                                       size, most));
+        throw Error(place,
+                    fmt::format("the file has {} bytes, more than {}; --max-file-size raises "
+                                "the limit",
+                                size, most));
     std::string bytes(static_cast<std::size_t>(size), '\0');
     file.seekg(0);
     file.read(bytes.data(), size);
