@@ -115,6 +115,10 @@ std::string SceneReport::materials_text() const {
                         materials_[i].polygons == 0 ? std::string("unused")
                                                     : fmt::format("{:.4g} m²", materials_[i].area));
         if (m.two_sided) out += ", two-sided";
+        if (!m.specular.empty()) out += fmt::format(", mirrors {:.3g}", luminance(m.specular));
+        if (m.transmits())
+            out += fmt::format(", transmits {:.3g}",
+                               luminance(m.transmittance) + luminance(m.diffuse_transmittance));
         if (m.emits())
             out +=
                 fmt::format(", emits {}{}",
