@@ -34,6 +34,9 @@ std::vector<Point> flattened(std::span<const Vec3> corners, const Vec3& normal) 
     return out;
 }
 
+// An outline that has no ears this often crosses itself all over; looking for more takes long.
+constexpr std::size_t most_forced = 16;
+
 // The corners that are left, as a ring.
 class Ring {
   public:
@@ -69,9 +72,12 @@ class Ring {
         const std::uint32_t before = previous_[i], after = next_[i];
         const Point &a = points_[before], &b = points_[i], &c = points_[after];
         if (turn(a, b, c) <= flat_) return false;
+        const auto [left, right] = std::minmax({a.x, b.x, c.x});
+        const auto [below, above] = std::minmax({a.y, b.y, c.y});
         for (const std::uint32_t k : concave_) {
-            if (k == before || k == i || k == after || next_[k] == k) continue;
             const Point& p = points_[k];
+            if (p.x < left || p.x > right || p.y < below || p.y > above) continue;
+            if (k == before || k == i || k == after || next_[k] == k) continue;
             if (p == a || p == b || p == c) {
                 if (enters(k, a, b, c)) return false;
                 continue;
@@ -131,12 +137,13 @@ Triangulation triangulate(std::span<const Vec3> outline) {
     };
     std::uint32_t at = 0;
     std::size_t looked_at = 0;  // corners in a row that are no ears
+    std::size_t forced = 0;     // cuts that were none
     while (ring.left() > 3) {
         const std::uint32_t next = ring.next(at);
         if (ring.is_spike(at)) {
             ring.remove(at);
             looked_at = 0;
-        } else if (ring.is_ear(at)) {
+        } else if (forced > most_forced ? ring.turn_at(at) > 0 : ring.is_ear(at)) {
             cut(at);
             looked_at = 0;
         } else if (++looked_at > ring.left()) {
@@ -154,6 +161,7 @@ Triangulation triangulate(std::span<const Vec3> outline) {
                 ring.remove(chosen);
             } else {
                 out.simple = false;
+                ++forced;
                 cut(chosen);
             }
             at = after;
