@@ -16,6 +16,7 @@
 #include "exitance/scene/validate.h"
 #include "exitance/solution/file.h"
 #include "lamp_report.h"
+#include "options_cli.h"
 #include "polar_diagram.h"
 #include "scene_report.h"
 
@@ -25,12 +26,13 @@ namespace {
 
 class InfoCommand {
   public:
-    explicit InfoCommand(CLI::App& command) {
+    explicit InfoCommand(CLI::App& command)
+        : reading_(command, "Reading a scene", describe(read_options_)) {
         command
             .add_option(
                 "file", file_,
-                "a scene (.toml, .glb, .gltf, .geom), a solution (.glb that solve wrote) or a "
-                "luminaire's photometry (.ies, .ldt)")
+                "a scene (.toml, .glb, .gltf, .mgf, .rad, .geom), a solution (.glb that solve "
+                "wrote) or a luminaire's photometry (.ies, .ldt)")
             ->required();
         command
             .add_option("-o,--output", diagram_,
@@ -47,7 +49,8 @@ class InfoCommand {
             "  exitance info downlight.ldt -o downlight.svg");
     }
 
-    void run() const {
+    void run() {
+        reading_.apply({});
         if (is_lamp_file(file_)) return lamp();
         if (diagram_)
             throw Error(Fault::wrong_use,
@@ -57,7 +60,7 @@ class InfoCommand {
             const SolutionReport report(read_solution(file_), file_);
             std::fputs((json_ ? report.json() : report.text()).c_str(), stdout);
         } else {
-            const Scene scene = read_scene(file_);
+            const Scene scene = read_scene(file_, read_options_);
             const SceneReport report(scene, validate(scene), file_);
             std::fputs((json_ ? report.json() : report.text()).c_str(), stdout);
         }
@@ -79,6 +82,8 @@ class InfoCommand {
         std::fputs((json_ ? report.json() : report.text()).c_str(), stdout);
     }
 
+    ReadOptions read_options_;
+    GivenOptions reading_;
     std::filesystem::path file_;
     std::optional<std::filesystem::path> diagram_;
     bool json_ = false;

@@ -31,7 +31,9 @@ Vec3 vector_of(const std::vector<double>& v) {
 
 class RenderCommand {
   public:
-    explicit RenderCommand(CLI::App& command) : given_(command, "Picture", describe(options_)) {
+    explicit RenderCommand(CLI::App& command)
+        : given_(command, "Picture", describe(options_)),
+          reading_(command, "Reading a scene", describe(read_options_)) {
         command.add_option("input", input_, "a solution, or a scene that is solved first")
             ->type_name("file")
             ->required();
@@ -67,6 +69,7 @@ class RenderCommand {
 
     void run() {
         given_.apply({});
+        reading_.apply({});
         options_.group_weights = parsed_weights();
         if (range_.size() == 2) options_.range = {range_[0], range_[1]};
         require_output(output_, input_, {".png", ".exr", ".hdr"});
@@ -80,7 +83,7 @@ class RenderCommand {
         if (options_.size) parse_size(*options_.size);
 
         const Solution solution =
-            is_solution(input_) ? read_solution(input_) : lit(read_scene(input_));
+            is_solution(input_) ? read_solution(input_) : lit(read_scene(input_, read_options_));
         const Surfaces surfaces(solution, Backs::open);
         const Camera camera = chosen_camera(surfaces);
         const ImageSize size = size_of_picture(options_, camera);
@@ -92,6 +95,8 @@ class RenderCommand {
   private:
     RenderOptions options_;
     GivenOptions given_;
+    ReadOptions read_options_;
+    GivenOptions reading_;
     std::filesystem::path input_, output_;
     Reporting reporting_;
     std::optional<std::string> camera_;

@@ -122,6 +122,10 @@ std::string SceneReport::materials_text() const {
                         materials_[i].polygons == 0 ? std::string("unused")
                                                     : fmt::format("{:.4g} m²", materials_[i].area));
         if (m.two_sided) out += ", two-sided";
+        if (!m.specular.empty()) out += fmt::format(", mirrors {:.3g}", luminance(m.specular));
+        if (m.transmits())
+            out += fmt::format(", transmits {:.3g}",
+                               luminance(m.transmittance) + luminance(m.diffuse_transmittance));
         if (m.emits())
             out +=
                 fmt::format(", emits {}{}",
@@ -174,7 +178,8 @@ std::string SceneReport::problems_text() const {
         if (i == most_lines)
             return out + fmt::format("  … and {} more\n", problems_.size() - most_lines);
         const std::string place = problems_[i].place.text();
-        out += fmt::format("  {}{}{}\n", place, place.empty() ? "" : ": ", problems_[i].what);
+        out += fmt::format("  {}. {}{}{}\n", i + 1, place, place.empty() ? "" : ": ",
+                           problems_[i].what);
     }
     return out;
 }

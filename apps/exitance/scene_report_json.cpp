@@ -82,6 +82,9 @@ std::string SceneReport::json() const {
                              {"reflectance", facts.material->reflectance},
                              {"luminous_reflectance", luminance(facts.material->reflectance)},
                              {"exitance", facts.material->exitance},
+                             {"specular", facts.material->specular},
+                             {"transmittance", facts.material->transmittance},
+                             {"diffuse_transmittance", facts.material->diffuse_transmittance},
                              {"two_sided", facts.material->two_sided},
                              {"area", facts.area},
                              {"polygons", facts.polygons}});

@@ -24,8 +24,11 @@ namespace {
 
 class SolveCommand {
   public:
-    explicit SolveCommand(CLI::App& command) : given_(command, "Solving", describe(options_)) {
-        command.add_option("scene", scene_, "what to light: .toml, .glb, .gltf or .geom")
+    explicit SolveCommand(CLI::App& command)
+        : given_(command, "Solving", describe(options_)),
+          reading_(command, "Reading a scene", describe(read_options_)) {
+        command
+            .add_option("scene", scene_, "what to light: .toml, .glb, .gltf, .mgf, .rad or .geom")
             ->required();
         command.add_option("--output,-o", output_, "the solution: a glTF file")
             ->type_name("file.glb")
@@ -42,7 +45,8 @@ class SolveCommand {
 
     void run() {
         require_output(output_, scene_, {".glb"});
-        const Scene scene = read_scene(scene_);
+        reading_.apply({});
+        const Scene scene = read_scene(scene_, read_options_);
         if (!reporting_.quiet) print_warnings(scene.warnings);
         given_.apply(scene.settings);
 
@@ -60,6 +64,8 @@ class SolveCommand {
   private:
     SolveOptions options_;
     GivenOptions given_;
+    ReadOptions read_options_;
+    GivenOptions reading_;
     std::filesystem::path scene_, output_;
     Reporting reporting_;
 };

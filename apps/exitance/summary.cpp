@@ -36,10 +36,11 @@ std::string energy_line(const Solution& solution) {
 }  // namespace
 
 void print_warnings(const std::vector<Problem>& warnings) {
+    std::size_t number = 0;
     for (const Problem& warning : warnings) {
         const std::string place = warning.place.text();
-        std::fprintf(stderr, "warning: %s%s%s\n", place.c_str(), place.empty() ? "" : ": ",
-                     warning.what.c_str());
+        std::fprintf(stderr, "warning %zu: %s%s%s\n", ++number, place.c_str(),
+                     place.empty() ? "" : ": ", warning.what.c_str());
     }
 }
 

@@ -2,6 +2,7 @@
 """The program from outside: a folder of its own for every test, and a small scene to light."""
 import json
 import os
+import re
 import struct
 import subprocess
 import tempfile
@@ -80,7 +81,7 @@ class ProgramTest(unittest.TestCase):
         self.assertEqual(done.returncode, code, done.stderr + done.stdout)
         self.assertRegex(done.stderr, message)
         self.assertEqual(done.stdout, "")
-        errors = [line for line in done.stderr.splitlines() if not line.startswith("warning: ")]
+        errors = [line for line in done.stderr.splitlines() if not re.match(r"warning \d+: ", line)]
         self.assertEqual(len(errors), 1, done.stderr)
         self.assertEqual(self.listing(), before)
         return done

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/scene/read.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "exitance/scene/formats/afit.h"
 #include "exitance/scene/formats/gltf.h"
 #include "exitance/scene/formats/lamp_file.h"
+#include "exitance/scene/formats/mgf.h"
 #include "exitance/scene/formats/project.h"
+#include "exitance/scene/formats/rad.h"
 #include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/mend.h"
 
@@ -18,7 +22,7 @@ namespace {
 /// each other twice and again must come to an end.
 class Nesting {
   public:
-    static constexpr std::size_t deepest = 32, most = 10'000;
+    explicit Nesting(const ReadOptions& options) : options_(options) {}
 
     /// Throws Error at `named`, where `path` is asked for, if it is one of the files it is named
     /// in.
@@ -30,13 +34,20 @@ class Nesting {
             for (const auto& file : open_) chain += file.filename().string() + " → ";
             throw Error(named, "the project includes itself: " + chain + path.filename().string());
         }
-        if (open_.size() == deepest || ++count_ > most)
-            throw Error(named, "projects name each other too deeply or too often to be read");
+        if (open_.size() >= options_.max_include_depth)
+            throw Error(named, fmt::format("projects name each other more than {} deep; "
+                                           "--max-include-depth raises the limit",
+                                           options_.max_include_depth));
+        if (++count_ > options_.max_files)
+            throw Error(named, fmt::format("projects name files too often, more than {} times; "
+                                           "--max-files raises the limit",
+                                           options_.max_files));
         open_.push_back(canonical);
     }
     void leave() { open_.pop_back(); }
 
   private:
+    const ReadOptions& options_;
     std::vector<std::filesystem::path> open_;
     std::size_t count_ = 0;
 };
@@ -53,17 +64,20 @@ Scene read_afit_with_display(const std::filesystem::path& path, std::string_view
 }
 
 // The extension decides; a file without a known one is judged by how it begins.
-Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nesting& nesting) {
+Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nesting& nesting,
+                   const ReadOptions& options) {
     nesting.enter(path, named);
-    const std::string bytes = read_whole_file(path);
+    std::string bytes = read_whole_file(path, options.most_bytes());
     const std::string extension = path.extension().string();
     const auto read = [&]() -> Scene {
         if (extension == ".toml")
             return parse_project(path, bytes,
                                  [&](const std::filesystem::path& file, const Place& at) {
-                                     return read_by_kind(file, at, nesting);
+                                     return read_by_kind(file, at, nesting, options);
                                  });
         if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes);
+        if (extension == ".mgf") return parse_mgf(path, std::move(bytes), options);
+        if (extension == ".rad") return parse_rad(path, std::move(bytes), options);
         if (extension == ".geom" || looks_like_afit_geometry(bytes))
             return read_afit_with_display(path, bytes);
         if (looks_like_gltf(bytes)) return parse_gltf(path, bytes);
@@ -71,8 +85,8 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
             throw Error({path.string(), 0, 0},
                         "a luminaire, not a scene: a project (.toml) places it in one");
         throw Error({path.string(), 0, 0},
-                    "not a scene that can be read, expected a project (.toml), glTF (.gltf, .glb) "
-                    "or AFIT geometry (.geom)");
+                    "not a scene that can be read, expected a project (.toml), glTF (.gltf, .glb), "
+                    "MGF (.mgf), Radiance (.rad) or AFIT geometry (.geom)");
     };
     Scene scene = read();
     nesting.leave();
@@ -81,10 +95,14 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& path) {
-    Nesting nesting;
-    Scene scene = read_by_kind(path, {path.string(), 0, 0}, nesting);
+Scene read_scene(const std::filesystem::path& path, const ReadOptions& options) {
+    Nesting nesting(options);
+    Scene scene = read_by_kind(path, {path.string(), 0, 0}, nesting, options);
     mend(scene);
+    if (options.strict && !scene.warnings.empty())
+        throw Error(scene.warnings[0].place,
+                    fmt::format("{} (--strict; {} warnings in all)", scene.warnings[0].what,
+                                scene.warnings.size()));
     return scene;
 }
 

@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "exitance/scene/read_options.h"
 #include "exitance/scene/scene.h"
 
 namespace exitance {
 
-/// Reads any supported scene: AFIT geom (.geom), glTF 2.0 (.gltf, .glb), lighting project (.toml).
-/// Throws Error(bad_input) with file:line:column. What was mended is listed in Scene::warnings.
-Scene read_scene(const std::filesystem::path& path);
+/// Reads any supported scene: AFIT geom (.geom), glTF 2.0 (.gltf, .glb), MGF (.mgf), Radiance
+/// (.rad), lighting project (.toml). Throws Error(bad_input) with file:line:column. What was mended
+/// is listed in Scene::warnings; with `options.strict`, the first of them is thrown.
+Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace exitance

@@ -35,8 +35,20 @@ std::string flux_unit(Quantity quantity) {
     return "";
 }
 
+namespace {
+
+bool any_positive(const Spectrum& values) {
+    return std::any_of(values.begin(), values.end(), [](double v) { return v > 0; });
+}
+
+}  // namespace
+
 bool Material::emits() const {
-    return std::any_of(exitance.begin(), exitance.end(), [](double e) { return e > 0; });
+    return any_positive(exitance);
+}
+
+bool Material::transmits() const {
+    return any_positive(transmittance) || any_positive(diffuse_transmittance);
 }
 
 std::array<Vec3, 4> Scene::corners(const Polygon& polygon) const {

@@ -31,17 +31,25 @@ std::string irradiance_unit(Quantity quantity);
 /// Unit of flux: "W", "lm" or "".
 std::string flux_unit(Quantity quantity);
 
-/// Diffuse reflection and emission, the same all over a surface.
+/// How a surface reflects, transmits and emits, the same all over it. Radiosity is solved for
+/// `reflectance`; what is mirrored is left to whoever looks at the solution. In every band
+/// reflectance, specular, diffuse transmittance and transmittance add up to at most 1.
 struct Material {
     std::string name;
-    Spectrum reflectance;                 ///< per band, 0 … 1
+    Spectrum reflectance;                 ///< total diffuse reflectance per band, 0 … 1
     Spectrum exitance;                    ///< emitted exitance per band [exitance_unit]
     std::string group;                    ///< light group of the emission; "" = chosen by --groups
     bool two_sided = false;               ///< reflects (and emits) from both sides
     std::optional<int> reflectance_file;  ///< AFIT `material m`
     Place place;                          ///< where it was declared
+    Spectrum specular{};                  ///< mirror-like reflectance per band; empty = none
+    double roughness = 0;                 ///< of mirror-like reflection: RMS slope of its facets
+    Spectrum diffuse_transmittance{};     ///< per band, spread over the other side; empty = none
+    Spectrum transmittance{};             ///< per band, straight through (glass); empty = none
+    std::optional<double> refractive_index{};  ///< of a solid body, where the file says
 
     bool emits() const;
+    bool transmits() const;
 };
 
 /// A named set of polygons of one material: a glTF primitive, an OBJ group, a luminaire.

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <limits>
 
 namespace exitance {
 
@@ -48,7 +47,7 @@ std::size_t characters(std::string_view text) {
 
 }  // namespace
 
-std::string read_whole_file(const std::filesystem::path& path) {
+std::string read_whole_file(const std::filesystem::path& path, std::uint64_t most) {
     const Place place{path.string(), 0, 0};
     std::error_code failure;
     const auto status = std::filesystem::status(path, failure);
@@ -61,6 +60,11 @@ std::string read_whole_file(const std::filesystem::path& path) {
     if (!file) throw Error(place, "the file cannot be opened for reading");
     const std::streamoff size = file.tellg();
     if (size < 0) throw Error(place, "the file cannot be read");
+    if (static_cast<std::uint64_t>(size) > most)
+        throw Error(place,
+                    fmt::format("the file has {} bytes, more than {}; --max-file-size raises "
+                                "the limit",
+                                size, most));
     std::string bytes(static_cast<std::size_t>(size), '\0');
     file.seekg(0);
     file.read(bytes.data(), size);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,9 +14,10 @@
 
 namespace exitance {
 
-/// Whole contents of a regular file. Throws Error(bad_input) if it is missing, a folder, a device
-/// or unreadable.
-std::string read_whole_file(const std::filesystem::path& path);
+/// Whole contents of a regular file. Throws Error(bad_input) if it is missing, a folder, a device,
+/// unreadable or larger than `most` bytes (--max-file-size).
+std::string read_whole_file(const std::filesystem::path& path,
+                            std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// Line and column (both from 1, columns in characters) of the byte at `offset` of `text`.
 Place place_at(const std::string& file, std::string_view text, std::size_t offset);

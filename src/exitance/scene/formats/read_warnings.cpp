@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/scene/formats/read_warnings.h"
+
+#include <fmt/format.h>
+
+namespace exitance {
+
+namespace {
+
+// Kinds may hold words of the file; a file of nothing but strange words must not fill memory.
+constexpr std::size_t most_kinds = 10'000;
+
+}  // namespace
+
+void ReadWarnings::add(const std::string& kind, const Place& place, const std::string& what) {
+    if (seen(kind)) return;
+    if (entries_.size() > most_kinds) return;
+    const bool last = entries_.size() == most_kinds;
+    index_.emplace(kind, entries_.size());
+    entries_.push_back({{place, last ? "there is more to warn of than can be listed" : what}, 0});
+}
+
+bool ReadWarnings::seen(const std::string& kind) {
+    const auto found = index_.find(kind);
+    if (found == index_.end()) return false;
+    ++entries_[found->second].more;
+    return true;
+}
+
+std::vector<Problem> ReadWarnings::take() {
+    std::vector<Problem> out;
+    for (Entry& entry : entries_) {
+        if (entry.more > 0) entry.problem.what += fmt::format(" ({} more like it)", entry.more);
+        out.push_back(std::move(entry.problem));
+    }
+    entries_.clear();
+    index_.clear();
+    return out;
+}
+
+}  // namespace exitance

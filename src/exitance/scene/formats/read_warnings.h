@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Warnings of a reader: one per kind of thing, at its first place, with how often it came up.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "exitance/scene/scene.h"
+
+namespace exitance {
+
+class ReadWarnings {
+  public:
+    /// Notes `what` at `place`. Of those with the same `kind` only the first is shown, and the
+    /// others are counted.
+    void add(const std::string& kind, const Place& place, const std::string& what);
+    /// Has this kind come up before? Then `place` and `what` need not be put together.
+    bool seen(const std::string& kind);
+    /// In the order in which they came up first.
+    std::vector<Problem> take();
+
+  private:
+    struct Entry {
+        Problem problem;
+        std::size_t more = 0;
+    };
+    std::vector<Entry> entries_;
+    std::unordered_map<std::string, std::size_t> index_;
+};
+
+}  // namespace exitance

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What may be asked of reading a scene: how strict, how finely curved, how much at most.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "exitance/run/options.h"
+
+namespace exitance {
+
+struct ReadOptions {
+    bool strict = false;
+    double tolerance = 0.02;
+    std::uint64_t max_include_depth = 32;
+    std::uint64_t max_files = 10'000;
+    double max_file_size = 1024;
+    std::uint64_t max_polygons = 20'000'000;
+    std::uint64_t max_corners = 10'000;
+    std::uint64_t max_lines = 20'000'000;
+
+    /// max_file_size [bytes].
+    std::uint64_t most_bytes() const {
+        return static_cast<std::uint64_t>(max_file_size * 1024 * 1024);
+    }
+};
+
+/// Every member of `options` with its name, unit, range and reason; values are read and written
+/// through the result.
+Options describe(ReadOptions& options);
+
+}  // namespace exitance
