@@ -492,9 +492,36 @@ TEST(Mgf, BodiesWithoutExtentAreLeftOutAndTold) {
     EXPECT_EQ(warned(scene, "without extent is left out"), 6U);
 }
 
-TEST(Mgf, TheLuminaireIsTold) {
-    const Scene scene = parse(square + "f a b c\nies lamp.ies -m 2\n");
-    EXPECT_EQ(place_of_warning(scene, "'lamp.ies' is not read").line, 10U);
+TEST(Mgf, LuminairesAreLamps) {
+    // 100 cd straight down in C0, falling to nothing at 90°.
+    const Folder folder;
+    folder.write("lamp.ies",
+                 "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 90\n0\n100 0\n");
+    const auto file = folder.write("t.mgf", square +
+                                                "f a b c\nxf -s 2\no lamps\n"
+                                                "ies lamp.ies -m 3 -rx 180 -t 1 2 3 -a 2 -t 5 0 0\n"
+                                                "o\nxf\nies lamp.ies\n");
+    const Scene scene = read_scene(file);
+    EXPECT_EQ(scene.quantity, Quantity::photometric);
+    ASSERT_EQ(scene.luminaires.size(), 3U);
+    const Luminaire& second = scene.luminaires[1];
+    EXPECT_EQ(second.name, "lamps[1]");
+    expect_vector(second.position, {12, 4, 6});
+    expect_vector(second.nadir, {0, 0, 1});
+    expect_vector(second.c0, {1, 0, 0});
+    EXPECT_EQ(second.place.line, 12U);
+    EXPECT_NEAR(second.intensity({0, 0, 1}), 300, 1e-9);
+    EXPECT_NEAR(second.intensity({0, 0, -1}), 0, 1e-9);
+    EXPECT_NEAR(scene.luminaires[2].intensity({0, 0, -1}), 100, 1e-9);
+    EXPECT_EQ(scene.luminaires[2].name, "lamp");
+    EXPECT_EQ(scene.luminaires[0].photometry, second.photometry);
+
+    const auto gone = folder.write("gone.mgf", square + "ies nowhere.ies\n");
+    expect_refused([&] { read_scene(gone); }, gone.string() + ":9:5", "cannot be read");
+    const auto mirrored = folder.write("mirrored.mgf", square + "ies lamp.ies -mx\n");
+    EXPECT_EQ(warned(read_scene(mirrored), "is mirrored"), 1U);
+    const auto countless = folder.write("many.mgf", square + "ies lamp.ies -a 1e9 -t 1 0 0\n");
+    expect_refused([&] { read_scene(countless); }, countless.string() + ":9:1", "--max-lines");
 }
 
 TEST(Mgf, BadInputIsRefusedWithItsPlace) {

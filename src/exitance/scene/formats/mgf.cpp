@@ -2,6 +2,7 @@
 #include "exitance/scene/formats/mgf.h"
 
 #include "exitance/scene/closed_bodies.h"
+#include "exitance/scene/formats/lamp_file.h"
 #include "exitance/scene/formats/mgf_reader.h"
 
 namespace exitance {
@@ -20,6 +21,7 @@ Scene MgfReader::read() {
                     "found no entity of MGF, expected lines such as 'm steel =' or 'f a b c'");
     for (const Material& material : scene_.materials)
         if (material.emits()) scene_.quantity = Quantity::photometric;
+    if (!scene_.luminaires.empty()) scene_.quantity = Quantity::photometric;
     scene_.warnings = warnings_.take();
     close_bodies(scene_);
     return std::move(scene_);
@@ -180,7 +182,44 @@ void MgfReader::include(Words words) {
 }
 
 void MgfReader::luminaire(Words words) {
-    warn("ies", fmt::format("the luminaire {} is not read", in_quotes(words[0])));
+    std::size_t options = 1;
+    double multiplier = 1;
+    if (words.size() > 1 && words[1] == "-m") {
+        if (words.size() < 3) refuse(2, "a multiplier, 0 or more");
+        multiplier = number(words, 2, "a multiplier, 0 or more", 0, 1e9);
+        options = 3;
+    }
+    const std::filesystem::path path = files_.resolve(std::string(words[0]), lines_->place(1));
+    auto& photometry = photometries_[path];
+    if (!photometry) {
+        try {
+            LampFile lamp = read_lamp_file(path);
+            for (const Problem& problem : lamp.warnings)
+                warnings_.add(problem.place.text() + problem.what, problem.place, problem.what);
+            photometry = std::make_shared<const Photometry>(std::move(lamp.photometry));
+        } catch (const Error& error) {
+            throw Error(lines_->place(1), fmt::format("the luminaire {} cannot be read: {}",
+                                                      in_quotes(words[0]), error.what()));
+        }
+    }
+    open(similarity(words.subspan(options), options));
+    do {
+        budget_.spend_lines(1, [&] { return lines_->place(0); });
+        Luminaire lamp;
+        lamp.name = object_name();
+        if (lamp.name.empty()) lamp.name = as_utf8(path.stem().string());
+        lamp.photometry = photometry;
+        lamp.position = placing_.point({});
+        lamp.c0 = normalized(placing_.vector({1, 0, 0}));
+        lamp.nadir = normalized(placing_.vector({0, 0, -1}));
+        lamp.multiplier = multiplier;
+        lamp.place = lines_->line_place();
+        if (placing_.determinant() < 0 && !warnings_.seen("mirrored lamp"))
+            warn("mirrored lamp", fmt::format("the luminaire {} is mirrored; its distribution is "
+                                              "turned instead",
+                                              in_quotes(words[0])));
+        scene_.luminaires.push_back(std::move(lamp));
+    } while (next_copy());
 }
 
 std::string MgfReader::object_name() const {

@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,6 +20,7 @@
 #include "exitance/scene/formats/polygon_collector.h"
 #include "exitance/scene/formats/similarity_arguments.h"
 #include "exitance/scene/formats/source_text.h"
+#include "exitance/scene/luminaire.h"
 
 namespace exitance {
 
@@ -108,6 +111,7 @@ class MgfReader {
     bool next_copy();
     void move(Words words);
     void include(Words words);
+    // ies file [-m multiplier] [transformation]: nadir along −z, C0 along x.
     void luminaire(Words words);
 
     // "room/table/leg", with the place in arrays: "room/chair[2]", "lamps[3,0]".
@@ -167,6 +171,7 @@ class MgfReader {
     };
     std::map<std::string, std::vector<Made>> of_name_;
 
+    std::map<std::filesystem::path, std::shared_ptr<const Photometry>> photometries_;
     std::vector<std::string> objects_;
     std::vector<Moving> movings_;
     std::size_t file_objects_ = 0, file_movings_ = 0;  // open before the current file
