@@ -118,7 +118,8 @@ class RenderCommand {
         auto* look_at = place("--look-at", look_at_, "the point it looks at [m]")->excludes(name);
         eye->needs(look_at);
         look_at->needs(eye);
-        place("--up", up_, "direction that is up in the picture (default: 0 1 0)")->excludes(name);
+        place("--up", up_, "direction that is up in the picture (default: as the scene has it)")
+            ->excludes(name);
         command
             .add_option("--fov", fov_, "vertical field of view (default: the camera's, else 45)")
             ->type_name("degrees")
@@ -167,10 +168,12 @@ class RenderCommand {
         } else if (!eye_.empty()) {
             camera.eye = vector_of(eye_);
             camera.look_at = vector_of(look_at_);
+            camera.up = surfaces.solution().up;
         } else if (!cameras.empty()) {
             camera = cameras.front();
         } else {
-            camera = automatic_view(surfaces, up_.empty() ? Vec3{0, 1, 0} : vector_of(up_));
+            camera =
+                automatic_view(surfaces, up_.empty() ? surfaces.solution().up : vector_of(up_));
         }
         if (!up_.empty()) camera.up = vector_of(up_);
         if (fov_) camera.fov_y = *fov_;

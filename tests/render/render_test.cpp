@@ -184,13 +184,13 @@ TEST(AutomaticView, stands_inside_a_room_and_outside_a_body) {
             lit += p.x > 0 ? 1 : 0;
         return lit / 300.0;
     };
-    const Camera inside = automatic_view(Surfaces(room, Backs::open));
+    const Camera inside = automatic_view(Surfaces(room, Backs::open), {0, 1, 0});
     EXPECT_GT(inside.eye.x, 0);
     EXPECT_LT(inside.eye.x, 4);
     EXPECT_GT(inside.eye.z, 0);
     EXPECT_LT(inside.eye.z, 5);
     EXPECT_EQ(covered(room, inside), 1);
-    const Camera outside = automatic_view(Surfaces(body, Backs::open));
+    const Camera outside = automatic_view(Surfaces(body, Backs::open), {0, 1, 0});
     EXPECT_GT(length(outside.eye - Vec3{2, 1.5, 2.5}), 5);
     EXPECT_GT(covered(body, outside), 0.2);
     EXPECT_LT(covered(body, outside), 0.95);

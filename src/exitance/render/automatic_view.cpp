@@ -31,17 +31,18 @@ Camera automatic_view(const Surfaces& surfaces, const Vec3& up) {
         if (surfaces.caster().closest(middle, d, 0, far)) ++met;
     }
     const Frame frame(normalized(up));
-    if (met > 0.6 * directions) {
+    // How far the walls are on the level of the middle.
+    double longest = 0;
+    Vec3 back = frame.tangent;
+    for (int i = 0; i < 64; ++i) {
+        const double phi = 2 * std::numbers::pi * i / 64;
+        const Vec3 d = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
+        const auto hit = surfaces.caster().closest(middle, d, 0, far);
+        const double free = hit ? double(hit->distance) : 0.0;
+        if (free > longest) longest = free, back = d;
+    }
+    if (met > 0.6 * directions && longest > 0.05 * diagonal) {
         // Back against the farthest wall, a little to the side of straight across.
-        double longest = 0;
-        Vec3 back = frame.tangent;
-        for (int i = 0; i < 64; ++i) {
-            const double phi = 2 * std::numbers::pi * i / 64;
-            const Vec3 d = frame.tangent * std::cos(phi) + frame.bitangent * std::sin(phi);
-            const auto hit = surfaces.caster().closest(middle, d, 0, far);
-            const double free = hit ? double(hit->distance) : 0.0;
-            if (free > longest) longest = free, back = d;
-        }
         camera.eye = middle + back * (0.92 * longest);
         camera.look_at = middle - back * (0.25 * longest) - frame.normal * (0.05 * longest);
         camera.fov_y = 65;

@@ -9,6 +9,6 @@ namespace exitance {
 
 /// A camera that shows the scene: across the room from the inside if it is one, else all of it
 /// from outside. `up` need not be of unit length. `surfaces` made with Backs::open.
-Camera automatic_view(const Surfaces& surfaces, const Vec3& up = {0, 1, 0});
+Camera automatic_view(const Surfaces& surfaces, const Vec3& up);
 
 }  // namespace exitance

@@ -105,6 +105,7 @@ struct Scene {
     std::string title;
     Quantity quantity = Quantity::unitless;
     std::vector<std::string> bands{"R", "G", "B"};
+    Vec3 up{0, 1, 0};  ///< by the convention of the file's format
 
     std::vector<Vec3> points;   ///< [m]
     std::vector<Vec3> normals;  ///< parallel to `points`: unit shading normal, zero = geometric

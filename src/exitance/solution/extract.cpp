@@ -229,6 +229,7 @@ Solution extract_solution(const Radiosity& radiosity) {
     out.title = scene.title;
     out.quantity = scene.quantity;
     out.bands = scene.bands;
+    out.up = scene.up;
     out.groups = radiosity.groups.groups;
     out.materials = scene.materials;
     for (std::size_t l = 0; l < scene.luminaires.size(); ++l)

@@ -94,6 +94,7 @@ json extras_of(const Solution& s) {
              {"exitance_unit", exitance_unit(s.quantity)},
              {"irradiance_unit", irradiance_unit(s.quantity)},
              {"bands", s.bands},
+             {"up", json_of(s.up)},
              {"groups", groups},
              {"energy",
               {{"emitted", s.energy.emitted},
@@ -201,6 +202,8 @@ void read_extras(const Node& extras, Solution& s) {
         extras["format"].refuse(fmt::format("{}", format_version));
     s.title = extras["title"].text();
     s.quantity = read_quantity(extras["quantity"]);
+    s.up = extras["up"].vector();
+    if (!(length(s.up) > 0)) extras["up"].refuse("a direction");
     s.bands.clear();
     const Node bands = extras["bands"], groups = extras["groups"];
     for (std::size_t i = 0; i < bands.size(); ++i) s.bands.push_back(bands[i].text());

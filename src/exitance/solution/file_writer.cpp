@@ -317,6 +317,15 @@ class Writer {
         }
     }
 
+    /// Viewers of glTF have +y up: the quaternion that turns `up` there; nothing if it is there.
+    static std::optional<std::array<double, 4>> upright(const Vec3& up) {
+        const Vec3 from = normalized(up), axis = cross(from, {0, 1, 0});
+        if (from.y > 1 - 1e-12) return std::nullopt;
+        if (from.y < -1 + 1e-12) return std::array{1.0, 0.0, 0.0, 0.0};
+        const double w = 1 + from.y, norm = std::sqrt(w * w + dot(axis, axis));
+        return std::array{axis.x / norm, axis.y / norm, axis.z / norm, w / norm};
+    }
+
     std::string description() const {
         json extras = extras_of(s_);
         if (!s_.emitters.empty())
@@ -331,6 +340,12 @@ class Writer {
         if (gltf.contains("nodes")) {
             json all = json::array();
             for (std::size_t i = 0; i < gltf["nodes"].size(); ++i) all.push_back(i);
+            if (const auto rotation = upright(s_.up)) {
+                const std::size_t root = gltf["nodes"].size();
+                gltf["nodes"].push_back(
+                    {{"name", "upright"}, {"rotation", *rotation}, {"children", all}});
+                all = {root};
+            }
             gltf["scenes"] = {{{"nodes", all}}};
             gltf["scene"] = 0;
         }

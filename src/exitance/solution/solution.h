@@ -65,6 +65,7 @@ struct Solution {
     std::string title;
     Quantity quantity = Quantity::unitless;
     std::vector<std::string> bands{"R", "G", "B"};
+    Vec3 up{0, 1, 0};
     std::vector<LightGroup> groups;
 
     std::vector<Vec3f> positions;  ///< per vertex [m]

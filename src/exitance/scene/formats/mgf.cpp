@@ -22,6 +22,7 @@ Scene MgfReader::read() {
     for (const Material& material : scene_.materials)
         if (material.emits()) scene_.quantity = Quantity::photometric;
     if (!scene_.luminaires.empty()) scene_.quantity = Quantity::photometric;
+    scene_.up = {0, 0, 1};
     scene_.warnings = warnings_.take();
     close_bodies(scene_);
     return std::move(scene_);

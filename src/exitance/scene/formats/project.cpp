@@ -55,6 +55,7 @@ class ProjectReader {
              root_.tables("geometry", {"file", "unit", "up", "translate", "rotate", "scale"}))
             parts.push_back(geometry(table));
         decide_quantity(materials, luminaires, parts);
+        if (!parts.empty()) scene_.up = normalized(parts[0].placing.vector(parts[0].scene.up));
         for (Part& part : parts) {
             if (scene_.polygons.size() + part.scene.polygons.size() > limits::elements)
                 throw Error(part.place, fmt::format("with this file the scene has more than {} "

@@ -41,6 +41,7 @@ class RadReader {
         read_all(tokens);
         for (const Material& material : scene_.materials)
             if (material.emits()) scene_.quantity = Quantity::radiometric;
+        scene_.up = {0, 0, 1};
         scene_.warnings = warnings_.take();
         close_bodies(scene_);
         return std::move(scene_);
