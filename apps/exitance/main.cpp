@@ -2,6 +2,7 @@
 // The command line. The only place that prints or exits.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -77,6 +78,10 @@ int main(int argc, char** argv) {
     try {
         require_known_command(app, argc, argv);
         app.parse(argc, argv);
+        // A standard output that is closed was not wanted.
+        if (std::fflush(stdout) != 0 && errno != EBADF)
+            throw exitance::Error(exitance::Fault::could_not_finish,
+                                  "what was printed could not be written");
         return 0;
     } catch (const CLI::ExtrasError& error) {
         return report(unknown_option(app, error));

@@ -76,6 +76,9 @@ double number_of(const Cell& cell, std::string_view column, const Place& line) {
     if (failure != std::errc{} || rest != end || !std::isfinite(value))
         throw Error(Place{line.file, line.line, cell.column},
                     fmt::format("found '{}', expected a number for {}", cell.text, column));
+    if (!(std::abs(value) <= 1e9))
+        throw Error(Place{line.file, line.line, cell.column},
+                    fmt::format("found {} = {}, expected at most 1e9 m", column, cell.text));
     return value;
 }
 

@@ -46,6 +46,9 @@ class SolveCommand {
     void run() {
         require_output(output_, scene_, {".glb"});
         reading_.apply({});
+        if (is_solution(scene_))
+            throw Error(Fault::wrong_use,
+                        "'" + scene_.string() + "' is a solution already, expected a scene");
         const Scene scene = read_scene(scene_, read_options_);
         if (!reporting_.quiet) print_warnings(scene.warnings);
         given_.apply(scene.settings);

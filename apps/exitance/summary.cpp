@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 
 #include "human_number.h"
@@ -18,7 +19,8 @@ std::string group_names(const Solution& solution) {
 }
 
 std::string percent(double fraction) {
-    return fmt::format("{:.2g} %", 100 * fraction);
+    const double value = 100 * fraction;
+    return std::abs(value) < 99.5 ? fmt::format("{:.2g} %", value) : fmt::format("{:.0f} %", value);
 }
 
 std::string energy_line(const Solution& solution) {

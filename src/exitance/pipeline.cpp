@@ -83,6 +83,19 @@ Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
     };
 }
 
+std::map<std::string, std::string> used(SolveOptions options) {
+    std::map<std::string, std::string> out;
+    for (const Option& option : describe(options))
+        if (option.name != "threads")  // the bytes do not depend on it
+            out[option.name] = option.value_text();
+    return out;
+}
+
+void require_polygons(const Scene& scene) {
+    if (scene.polygons.empty())
+        throw Error(Fault::bad_input, "the scene has no polygons, expected something to light");
+}
+
 /// What is demanded of a solver. It does what should lead to the error asked for; held-out points
 /// tell whether it did, and if not, more is demanded while that helps.
 struct Demand {
@@ -105,6 +118,7 @@ struct Demand {
 
 Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe,
                const Cancel* cancel, const Snapshots& snapshots) {
+    require_polygons(scene);
     const tbb::global_control threads(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
@@ -130,10 +144,7 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     Solution solution = extract_solution(radiosity);
     solution.energy = energy;
     solution.error = estimate_error(solution, options.seed);
-    SolveOptions used = options;
-    for (const Option& option : describe(used))
-        if (option.name != "threads")  // the bytes do not depend on it
-            solution.options[option.name] = option.value_text();
+    solution.options = used(options);
     solution.counters = {{"shots", static_cast<double>(solver.shots())},
                          {"rays", static_cast<double>(solver.rays())},
                          {"vertices", static_cast<double>(radiosity.mesh.vertices().size())},

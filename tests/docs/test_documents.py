@@ -38,6 +38,7 @@ class Commands(unittest.TestCase):
                 with self.subTest(document=document.name, commands=commands):
                     done = run_block(commands)
                     self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+                    self.assertNotIn("nan", done.stdout.split(","), "a probe that finds nothing")
         self.assertGreater(found, 0)
 
     def test_a_wrong_command_is_noticed(self):

@@ -75,9 +75,9 @@ TEST(SurfaceProbe, nothing_near_or_facing_away_is_no_answer) {
     EXPECT_FALSE(probe_surface(surfaces, {2, 0, 2.5}, {0, -1, 0}, E));
     EXPECT_FALSE(probe_surface(surfaces, {2, 0, 2.5}, {1, 0, 0}, E));
     EXPECT_EQ(E, (std::vector<double>{-1, -1, -1}));
-    // The diagonal is √50; 1e-3 of it is 7.07 mm.
-    EXPECT_TRUE(probe_surface(surfaces, {2, 0.007, 2.5}, {0, 1, 0}, E));
-    EXPECT_FALSE(probe_surface(surfaces, {2, 0.0072, 2.5}, {0, 1, 0}, E));
+    // The diagonal is √50; 3e-3 of it is 21.2 mm.
+    EXPECT_TRUE(probe_surface(surfaces, {2, 0.021, 2.5}, {0, 1, 0}, E));
+    EXPECT_FALSE(probe_surface(surfaces, {2, 0.0214, 2.5}, {0, 1, 0}, E));
     EXPECT_TRUE(probe_surface(surfaces, {2, 0.1, 2.5}, {0, 1, 0}, E, {.tolerance = 0.02}));
 }
 

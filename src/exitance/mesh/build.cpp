@@ -18,6 +18,9 @@ namespace {
 constexpr double coplanar_cosine = 0.99999;
 // Shading normals that a file gives to both sides of an edge are the same within a degree.
 constexpr double smooth_cosine = 0.9998;
+// Shading normals round a face if they are within 50 degrees of its own; means over the corner of a
+// box are 54 off.
+constexpr double rounding_cosine = 0.64;
 // A polygon within this many welding distances of another stands on it.
 constexpr double contact_gap = 100;
 
@@ -232,9 +235,10 @@ class MeshBuilder {
         for (const bool back : {false, true}) {
             if (back && !scene_.material(scene_.polygons[face.polygon.index()]).two_sided) break;
             if (back) turn(face);
-            // Normals that point behind the face say nothing about its side; use the geometric one.
+            // Normals far from the face's do not round it: they are means over the corner of a box,
+            // or nonsense. Light would be received from where the face cannot see.
             for (std::uint32_t i = 0; i < n; ++i)
-                if (dot(face.normals[i], face.normal) < 0.2) face.normals[i] = {};
+                if (dot(face.normals[i], face.normal) < rounding_cosine) face.normals[i] = {};
             mesh_.faces_.push_back(face);
         }
     }

@@ -113,6 +113,10 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
     const Columns& columns = radiosity.columns;
     EnergyBalance out;
     out.emitted = radiosity.emitted_flux();
+    if (!radiosity.emission_shot) {
+        out.unshot = out.emitted;
+        return out;
+    }
     std::vector<Sender> senders;
     std::vector<double> cumulative;
     double sent = 0;

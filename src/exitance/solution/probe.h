@@ -14,7 +14,7 @@ namespace exitance {
 
 struct ProbeOptions {
     std::string method = "interpolate";
-    double tolerance = 1e-3;
+    double tolerance = 3e-3;
     int rays = 1024;
     std::uint64_t seed = 0;
 };

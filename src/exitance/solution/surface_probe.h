@@ -12,7 +12,7 @@ namespace exitance {
 struct SurfaceProbeOptions {
     /// How far a point may lie from its surface, in diagonals of the scene: forgives coordinates
     /// rounded to a millimetre in a room, and flat facets of a curved surface.
-    double tolerance = 1e-3;
+    double tolerance = 3e-3;
     /// Least cosine between the point's normal and the triangle's: at an edge between two walls
     /// the one that is meant is chosen, and never the far side of a board.
     double least_facing = 0.5;

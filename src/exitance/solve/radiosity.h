@@ -52,6 +52,7 @@ class Radiosity {
     std::vector<float> seen;      ///< per vertex: visible share of the lamps' light
     std::vector<float> variance;  ///< per vertex: of the luminance of H, from sampling visibility
     ElementField shot;            ///< per leaf: reflected exitance already shot
+    bool emission_shot = false;
 
     /// Reflectance per column of the face's material, and its emitted exitance.
     std::span<const float> rho(const Face& face) const;

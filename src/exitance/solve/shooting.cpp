@@ -51,7 +51,7 @@ Shooting::Shooting(Radiosity& radiosity, const ShootingOptions& options)
 bool Shooting::step() {
     if (!emitted_) {
         shoot_emission();
-        emitted_ = true;
+        emitted_ = radiosity_.emission_shot = true;
         return true;
     }
     if (options_.adaptive && !refined_ && unshot() <= refine_at * enough()) {
@@ -133,7 +133,7 @@ void Shooting::refine_mesh() {
     // As many elements as there are patches, each wrong by the tolerance, are wrong by it together.
     const double share = radiosity_.area() / static_cast<double>(radiosity_.mesh.patches().size());
     const RefineOptions options{tolerance(), static_cast<float>(share),
-                                static_cast<float>(options_.min_area), !refined_,
+                                static_cast<float>(options_.min_area * lit_share_), !refined_,
                                 options_.interrupted};
     rays_ += refine(radiosity_, options, [&](const Receivers& points, Received& lit) {
         return illuminate(points, lit);
@@ -232,6 +232,7 @@ namespace {
 
 struct FluxSums {
     std::vector<double> received, unshot;  ///< per column
+    double square = 0;                     ///< of the patches' received luminance, over their area
     double magnitude = 0;                  ///< of what the patches have unshot
 
     FluxSums& operator+=(const FluxSums& other) {
@@ -241,6 +242,7 @@ struct FluxSums {
             received[c] += other.received[c];
             unshot[c] += other.unshot[c];
         }
+        square += other.square;
         magnitude += other.magnitude;
         return *this;
     }
@@ -272,6 +274,8 @@ void Shooting::find_unshot() {
                     block.unshot[c] += static_cast<double>(unshot[c]);
                 }
                 block.magnitude += static_cast<double>(columns.magnitude(unshot));
+                const auto flux = static_cast<double>(columns.luminance(received));
+                if (patch_open_[p] > 0) block.square += flux * flux / double(patch_open_[p]);
             }
             return block;
         },
@@ -283,6 +287,8 @@ void Shooting::find_unshot() {
     double received = 0;
     for (std::size_t c = 0; c < stride; ++c)
         received += double(columns.weight[c]) * sums.received[c];
+    // As if the light lay evenly on a part of the area and the rest were dark.
+    if (sums.square > 0) lit_share_ = received * received / (sums.square * open_area_);
     const double to_come = static_cast<double>(columns.luminance(ambient()));
     mean_irradiance_ = received / open_area_ + std::max(0.0, to_come);
 }

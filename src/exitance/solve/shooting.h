@@ -83,6 +83,7 @@ class Shooting final : public Solver {
     std::vector<double> unshot_column_;  ///< Σ over the patches, signed
     std::vector<double> rho_area_;       ///< Σ A ρ per column, over the open area
     double open_area_ = 0;
+    double lit_share_ = 1;        ///< of the open area that light is spread over
     double mean_irradiance_ = 0;  ///< luminance
 
     Received received_;

@@ -87,6 +87,7 @@ RayCaster::RayCaster(std::span<const Vec3> points, std::span<const Face> faces,
     for (const Face& face : faces)
         for (const std::uint32_t corner : face) box.add(points[corner]);
     middle_ = box.empty() ? Vec3{} : box.centre();
+    empty_ = faces.empty();
     // Coordinates relative to the middle have float steps of at most 2⁻²⁵ of the diagonal; ray
     // origins, hit distances and triangles each add a few of them.
     clearance_ = std::max(box.diagonal(), 1e-30) * 0x1.0p-19;
@@ -203,6 +204,7 @@ void RayCaster::closest(const RayPacket& rays, PacketHits& hits) const {
 
 void RayCaster::visit_near(const Vec3& point, double radius,
                            const std::function<double(std::uint32_t, double)>& visit) const {
+    if (empty_) return;
     const Vec3f p(point - middle_);
     RTCPointQuery query{p.x, p.y, p.z, 0.0f, static_cast<float>(radius)};
     RTCPointQueryContext context;

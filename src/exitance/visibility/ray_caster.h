@@ -74,6 +74,7 @@ class RayCaster {
     std::unique_ptr<Embree> embree_;
     Vec3 middle_;
     double clearance_ = 0;
+    bool empty_ = false;
 };
 
 }  // namespace exitance

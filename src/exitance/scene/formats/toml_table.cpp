@@ -74,8 +74,29 @@ TomlTable::TomlTable(std::string file, std::shared_ptr<const toml::table> table,
     }
 }
 
+namespace {
+
+// The parser descends into dotted keys one call a part.
+void refuse_endless_keys(const std::string& file, std::string_view text) {
+    constexpr std::size_t most_parts = 256;
+    std::size_t line = 1, dots = 0;
+    bool key = true;
+    for (const char c : text) {
+        if (c == '\n') {
+            ++line, dots = 0, key = true;
+        } else if (c == '=' || c == '#') {
+            key = false;
+        } else if (key && c == '.' && ++dots > most_parts) {
+            throw Error({file, line, 1}, "found a key of more than 256 parts");
+        }
+    }
+}
+
+}  // namespace
+
 TomlTable TomlTable::parse(const std::string& file, std::string_view text, const std::string& name,
                            const std::vector<std::string>& keys) {
+    refuse_endless_keys(file, text);
     try {
         return {file, std::make_shared<const toml::table>(toml::parse(text, file)), name, keys};
     } catch (const toml::parse_error& error) {
