@@ -47,7 +47,7 @@ class SolveCommand {
         require_output(output_, scene_, {".glb"});
         reading_.apply({});
         const Scene scene = read_scene(scene_, read_options_);
-        if (!reporting_.quiet) print_warnings(scene.warnings);
+        if (!reporting_.quiet) print_findings(scene);
         given_.apply(scene.settings);
 
         const Interrupt interrupt;

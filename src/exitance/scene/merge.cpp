@@ -90,6 +90,7 @@ void merge(Scene& scene, Scene part, const Transform& placing) {
     append(scene.grids, part.grids);
     append(scene.settings, part.settings);
     append(scene.warnings, part.warnings);
+    append(scene.notes, part.notes);
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "exitance/scene/formats/afit.h"
+#include "exitance/scene/formats/general_geometry.h"
 #include "exitance/scene/formats/gltf.h"
 #include "exitance/scene/formats/lamp_file.h"
 #include "exitance/scene/formats/mgf.h"
@@ -78,6 +79,7 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
         if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes);
         if (extension == ".mgf") return parse_mgf(path, std::move(bytes), options);
         if (extension == ".rad") return parse_rad(path, std::move(bytes), options);
+        if (is_general_geometry(path)) return parse_general_geometry(path, bytes, options);
         if (extension == ".geom" || looks_like_afit_geometry(bytes))
             return read_afit_with_display(path, bytes);
         if (looks_like_gltf(bytes)) return parse_gltf(path, bytes);
@@ -86,7 +88,8 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
                         "a luminaire, not a scene: a project (.toml) places it in one");
         throw Error({path.string(), 0, 0},
                     "not a scene that can be read, expected a project (.toml), glTF (.gltf, .glb), "
-                    "MGF (.mgf), Radiance (.rad) or AFIT geometry (.geom)");
+                    "MGF (.mgf), Radiance (.rad), AFIT geometry (.geom), View3D (.vs3), .obj, .ply, "
+                    ".stl, .fbx, .dae, .3ds or .ifc");
     };
     Scene scene = read();
     nesting.leave();

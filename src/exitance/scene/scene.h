@@ -117,6 +117,7 @@ struct Scene {
     std::vector<SensorGrid> grids;
     std::vector<Setting> settings;  ///< from [solve] of a project file
     std::vector<Problem> warnings;  ///< from the readers
+    std::vector<Problem> notes;     ///< what the readers took for granted; nothing is wrong
 
     /// Corners of a polygon; only the first `size()` are meaningful.
     std::array<Vec3, 4> corners(const Polygon& polygon) const;
