@@ -28,7 +28,10 @@ class SolveCommand {
         : given_(command, "Solving", describe(options_)),
           reading_(command, "Reading a scene", describe(read_options_)) {
         command
-            .add_option("scene", scene_, "what to light: .toml, .glb, .gltf, .mgf, .rad or .geom")
+            .add_option(
+                "scene", scene_,
+                "what to light: .toml, .glb, .gltf, .mgf, .rad, .geom, .vs3, .obj, .ply, .stl, "
+                ".fbx, .dae, .3ds or .ifc")
             ->required();
         command.add_option("--output,-o", output_, "the solution: a glTF file")
             ->type_name("file.glb")

@@ -82,6 +82,14 @@ void merge(Scene& scene, Scene part, const Transform& placing) {
         grid.normal = normalized(placing.normal(grid.normal));
     }
     for (Luminaire& luminaire : part.luminaires) place(luminaire, placing);
+    const auto of = static_cast<std::uint32_t>(scene.form_factors.surfaces.size());
+    for (FormFactorSurface& asked : part.form_factors.surfaces) {
+        asked.surface += surfaces;
+        if (asked.base) *asked.base += of;
+        if (asked.combine) *asked.combine += of;
+    }
+    append(scene.form_factors.surfaces, part.form_factors.surfaces);
+    append(scene.form_factors.options, part.form_factors.options);
     append(scene.polygons, part.polygons);
     append(scene.surfaces, part.surfaces);
     append(scene.materials, part.materials);

@@ -2,14 +2,14 @@
 // The one file that knows Assimp.
 #include "exitance/scene/formats/assimp_import.h"
 
+#include <assimp/MemoryIOWrapper.h>
+#include <assimp/config.h>
+#include <assimp/scene.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
-#include <assimp/MemoryIOWrapper.h>
-#include <assimp/config.h>
-#include <assimp/scene.h>
 
 #include <algorithm>
 #include <cstring>
@@ -206,8 +206,10 @@ void read_metadata(const aiScene& scene, ImportedScene& out) {
     axis("UpAxisSign", out.up_sign);
     double centimetres = 0;
     float single = 0;
-    if (scene.mMetaData->Get("UnitScaleFactor", centimetres)) out.unit = centimetres / 100;
-    else if (scene.mMetaData->Get("UnitScaleFactor", single)) out.unit = double{single} / 100;
+    if (scene.mMetaData->Get("UnitScaleFactor", centimetres))
+        out.unit = centimetres / 100;
+    else if (scene.mMetaData->Get("UnitScaleFactor", single))
+        out.unit = double{single} / 100;
 }
 
 // Assimp tries every importer that it has; one remains.
@@ -227,8 +229,8 @@ ImportedScene assimp_import(const std::filesystem::path& path, const std::string
     ImportedScene out;
     const std::string name = path.stem().string() + extension;
     Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
-    Assimp::DefaultLogger::get()->attachStream(
-        new Messages(out.warnings), Assimp::Logger::Warn | Assimp::Logger::Err);
+    Assimp::DefaultLogger::get()->attachStream(new Messages(out.warnings),
+                                               Assimp::Logger::Warn | Assimp::Logger::Err);
     Assimp::Importer importer;
     keep_only(importer, extension);
     importer.SetIOHandler(new SceneFolder(name, bytes, path, options, out));

@@ -59,10 +59,29 @@ std::string unit_name(double metres) {
         double metres;
         const char* name;
     };
-    for (const Named& unit : {Named{1, "metres"}, {0.01, "centimetres"}, {0.001, "millimetres"},
-                              {0.0254, "inches"}, {0.3048, "feet"}})
+    for (const Named& unit : {Named{1, "metres"},
+                              {0.01, "centimetres"},
+                              {0.001, "millimetres"},
+                              {0.0254, "inches"},
+                              {0.3048, "feet"}})
         if (std::abs(unit.metres - metres) < 1e-6 * metres) return unit.name;
     return fmt::format("{:.9g} m", metres);
+}
+
+// Assimp skips lines of numbers without a digit before the point, and with them the vertices.
+std::string with_leading_zeros(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto is_digit = [&](std::size_t k) {
+            return k < text.size() && text[k] >= '0' && text[k] <= '9';
+        };
+        const char before = i > 0 ? text[i - 1] : '\n';
+        const bool starts = before == ' ' || before == '\t' || before == '-' || before == '+';
+        if (text[i] == '.' && starts && is_digit(i + 1)) out += '0';
+        out += text[i];
+    }
+    return out;
 }
 
 class GeneralGeometry {
@@ -86,8 +105,7 @@ class GeneralGeometry {
         for (std::size_t i = 0; i < from_.nodes.size(); ++i) read_node(i);
         for (const ImportedCamera& camera : from_.cameras) read_camera(camera);
         for (const ImportedLight& light : from_.lights) read_light(light);
-        if (scene_.polygons.empty())
-            warn("empty", "there are no polygons in the file");
+        if (scene_.polygons.empty()) warn("empty", "there are no polygons in the file");
         scene_.warnings = warnings_.take();
         close_bodies(scene_);
         return std::move(scene_);
@@ -110,11 +128,13 @@ class GeneralGeometry {
             const std::string_view unit = between(bytes, "<unit", ">");
             const auto metres = finite_number(between(unit, "meter=\"", "\""));
             const std::string_view up = between(bytes, "<up_axis>", "</up_axis>");
-            text = fmt::format("units: {}; {} up, {}",
-                               metres ? unit_name(*metres) + ", from the file"
-                                      : "metres, as nothing else is said",
-                               up.starts_with("Z") ? "Z" : up.starts_with("X") ? "X" : "Y",
-                               up.empty() ? "as nothing else is said" : "from the file");
+            text = fmt::format(
+                "units: {}; {} up, {}",
+                metres ? unit_name(*metres) + ", from the file" : "metres, as nothing else is said",
+                up.starts_with("Z")   ? "Z"
+                : up.starts_with("X") ? "X"
+                                      : "Y",
+                up.empty() ? "as nothing else is said" : "from the file");
         } else if (kind == ".ifc") {
             text = "units: from the file; Z up, turned to Y up";
         } else if (kind == ".3ds") {
@@ -252,8 +272,7 @@ class GeneralGeometry {
             for (std::uint32_t i = 0; i < count; ++i) {
                 const std::uint32_t v = mesh.corners[at + i];
                 if (v >= mesh.positions.size())
-                    refuse(fmt::format("a face has the vertex {} of {}", v,
-                                       mesh.positions.size()));
+                    refuse(fmt::format("a face has the vertex {} of {}", v, mesh.positions.size()));
                 const Vec3& p = mesh.positions[v];
                 if (!is_finite(p)) refuse("a coordinate is not a finite number");
                 Vec3 n = smooth ? mesh.normals[v] : Vec3{};
@@ -317,8 +336,8 @@ class GeneralGeometry {
         const bool sound = std::all_of(colour.begin(), colour.end(),
                                        [](double c) { return c >= 0 && c <= limits::exitance; });
         if (!sound || !(strength > 0) || !is_finite(to.position)) {
-            warn("dark light", fmt::format("light {} does not shine and is left out",
-                                           in_quotes(from.name)));
+            warn("dark light",
+                 fmt::format("light {} does not shine and is left out", in_quotes(from.name)));
             return;
         }
         to.multiplier = strength;
@@ -377,13 +396,16 @@ Scene parse_general_geometry(const std::filesystem::path& path, const std::strin
         throw Error(place, fmt::format("cannot be read as {}: {}", kind.name, why));
     };
     // Archives in the place of XML would be unpacked. XML has no such control characters.
-    if (std::string_view(kind.extension) == ".dae" &&
-        bytes.find("PK\x05\x06") != std::string::npos)
+    if (std::string_view(kind.extension) == ".dae" && bytes.find("PK\x05\x06") != std::string::npos)
         refuse("it is an archive");
+    const bool obj = std::string_view(kind.extension) == ".obj";
     ImportedScene imported;
     try {
         imported = unpack(contained_call(
-            [&] { return pack(assimp_import(path, kind.extension, bytes, options)); },
+            [&] {
+                return pack(assimp_import(path, kind.extension,
+                                          obj ? with_leading_zeros(bytes) : bytes, options));
+            },
             limits_for(bytes.size())));
     } catch (const CallFailed& failure) {
         refuse(as_utf8(failure.what()));

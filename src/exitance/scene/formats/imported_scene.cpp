@@ -17,10 +17,8 @@ class Packer {
     std::string take() { return std::move(bytes_); }
 
     template <class T>
-        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-    void operator()(const T& value) {
-        raw(&value, 1);
-    }
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void operator()(const T& value) { raw(&value, 1); }
     void operator()(const Vec3& v) { raw(&v.x, 3); }
     void operator()(const std::string& text) {
         (*this)(std::uint64_t{text.size()});
@@ -58,10 +56,8 @@ class Unpacker {
     bool ended() const { return bytes_.empty(); }
 
     template <class T>
-        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-    void operator()(T& value) {
-        raw(&value, 1);
-    }
+    requires std::is_arithmetic_v<T> || std::is_enum_v<T>
+    void operator()(T& value) { raw(&value, 1); }
     void operator()(bool& value) {
         std::uint8_t byte = 0;
         raw(&byte, 1);
@@ -110,11 +106,11 @@ class Unpacker {
 };
 
 template <class T>
-constexpr bool has_no_members = std::is_arithmetic_v<T> || std::is_same_v<T, Vec3> ||
-                       std::is_same_v<T, std::string>;
+constexpr bool has_no_members =
+    std::is_arithmetic_v<T> || std::is_same_v<T, Vec3> || std::is_same_v<T, std::string>;
 
 template <class V, class T>
-    requires std::same_as<std::remove_const_t<T>, Transform>
+requires std::same_as<std::remove_const_t<T>, Transform>
 void members(V& visit, T& t) {
     visit(t.x);
     visit(t.y);
@@ -123,7 +119,7 @@ void members(V& visit, T& t) {
 }
 
 template <class V, class T>
-    requires std::same_as<std::remove_const_t<T>, ImportedMaterial>
+requires std::same_as<std::remove_const_t<T>, ImportedMaterial>
 void members(V& visit, T& m) {
     visit(m.name);
     visit(m.diffuse);
@@ -137,7 +133,7 @@ void members(V& visit, T& m) {
 }
 
 template <class V, class T>
-    requires std::same_as<std::remove_const_t<T>, ImportedMesh>
+requires std::same_as<std::remove_const_t<T>, ImportedMesh>
 void members(V& visit, T& m) {
     visit(m.name);
     visit(m.material);
@@ -148,7 +144,7 @@ void members(V& visit, T& m) {
 }
 
 template <class V, class T>
-    requires std::same_as<std::remove_const_t<T>, ImportedNode>
+requires std::same_as<std::remove_const_t<T>, ImportedNode>
 void members(V& visit, T& n) {
     visit(n.name);
     visit(n.parent);
@@ -157,7 +153,7 @@ void members(V& visit, T& n) {
 }
 
 template <class V, class T>
-    requires std::same_as<std::remove_const_t<T>, ImportedCamera>
+requires std::same_as<std::remove_const_t<T>, ImportedCamera>
 void members(V& visit, T& c) {
     visit(c.name);
     visit(c.position);
@@ -170,7 +166,7 @@ void members(V& visit, T& c) {
 }
 
 template <class V, class T>
-    requires std::same_as<std::remove_const_t<T>, ImportedLight>
+requires std::same_as<std::remove_const_t<T>, ImportedLight>
 void members(V& visit, T& l) {
     visit(l.name);
     visit(l.kind);
@@ -182,7 +178,7 @@ void members(V& visit, T& l) {
 }
 
 template <class V, class T>
-    requires std::same_as<std::remove_const_t<T>, ImportedScene>
+requires std::same_as<std::remove_const_t<T>, ImportedScene>
 void members(V& visit, T& s) {
     visit(s.nodes);
     visit(s.meshes);

@@ -53,7 +53,7 @@ struct ImportedLight {
     std::string name;  ///< that of its node
     Kind kind = Kind::other;
     Vec3 position, direction;
-    std::array<double, 3> colour{};    ///< with its strength
+    std::array<double, 3> colour{};         ///< with its strength
     double inner_cone = 0, outer_cone = 0;  ///< full angles [radians]
 };
 
@@ -63,10 +63,10 @@ struct ImportedScene {
     std::vector<ImportedMaterial> materials;
     std::vector<ImportedCamera> cameras;
     std::vector<ImportedLight> lights;
-    std::vector<std::string> warnings;  ///< of the importer
-    std::vector<std::string> missing;   ///< files that were asked for and are not there
-    std::string refused;                ///< a file that must not be read; "" = none
-    std::optional<double> unit;         ///< metres per unit, where the importer says so
+    std::vector<std::string> warnings;    ///< of the importer
+    std::vector<std::string> missing;     ///< files that were asked for and are not there
+    std::string refused;                  ///< a file that must not be read; "" = none
+    std::optional<double> unit;           ///< metres per unit, where the importer says so
     std::optional<int> up_axis, up_sign;  ///< 0 … 2 and ±1, where the importer says so
 };
 
