@@ -46,6 +46,15 @@ const Kind* kind_of(const std::filesystem::path& path) {
     return found == kinds.end() ? nullptr : found;
 }
 
+// What the importers say of files in which nothing is wrong, or what is told already.
+bool is_chatter(std::string_view message) {
+    static constexpr std::array<std::string_view, 4> known{
+        "OBJ: No object detected", "OBJ: Unable to locate", "No hierarchy information",
+        "FBX: no material assigned"};
+    return std::any_of(known.begin(), known.end(),
+                       [&](std::string_view start) { return message.starts_with(start); });
+}
+
 // The text between `begin` and the next `end` after it, at its first place in `bytes`.
 std::string_view between(std::string_view bytes, std::string_view begin, std::string_view end) {
     const std::size_t at = bytes.find(begin);
@@ -99,7 +108,8 @@ class GeneralGeometry {
     Scene read(std::string_view bytes) {
         for (const std::string& name : from_.missing)
             warn("missing", fmt::format("there is no file {}", in_quotes(name)));
-        for (const std::string& text : from_.warnings) warn(text, as_utf8(text));
+        for (const std::string& text : from_.warnings)
+            if (!is_chatter(text)) warn(text, as_utf8(text));
         root_ = root(bytes);
         material_index_.assign(from_.materials.size(), std::nullopt);
         for (std::size_t i = 0; i < from_.nodes.size(); ++i) read_node(i);
@@ -178,8 +188,10 @@ class GeneralGeometry {
         to.place = place_;
         to.reflectance.assign(from.diffuse.begin(), from.diffuse.end());
         to.exitance.assign(from.emissive.begin(), from.emissive.end());
-        if (from.name == "DefaultMaterial" || !from.diffuse_known) {
-            if (from.name == "DefaultMaterial") to.name = "no material";
+        // PLY has no materials; an unnamed one is the importer's own.
+        const bool none = from.name == "DefaultMaterial" || from.name.empty();
+        if (none || !from.diffuse_known) {
+            if (none) to.name = "no material";
             to.reflectance.assign(3, unknown_reflectance);
             warn("no material", fmt::format("there is geometry without a material; its reflectance "
                                             "is taken as {}",
@@ -412,7 +424,7 @@ Scene parse_general_geometry(const std::filesystem::path& path, const std::strin
     } catch (const std::length_error& failure) {
         refuse(failure.what());
     }
-    if (!imported.refused.empty()) refuse(as_utf8(imported.refused));
+    if (!imported.refused.empty()) throw Error(Fault::bad_input, imported.refused);
     return GeneralGeometry(path, kind, imported, options).read(bytes);
 }
 
