@@ -70,11 +70,11 @@ TEST(GeneralGeometry, ObjFacesNamesAndMaterials) {
                         "v .5 .2 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\nv 0 0 5\nvn 0 0 1\nusemtl white\n"
                         "f 1//1 2//1 3//1 4//1\no lamp\nusemtl lamp\nf 1 3 2\n"
                         "o pane\nusemtl glass\nf 9 6 5 7 8\n"));
-    // A quad, a triangle, and a pentagon of 1 − 0.1 m², whose notch takes three triangles.
+    // A quad, a triangle, and a pentagon of 1 m² less a notch of 0.25 m², of three triangles.
     ASSERT_EQ(scene.polygons.size(), 5U);
     EXPECT_EQ(scene.polygons[0].size(), 4U);
     EXPECT_EQ(scene.normals[scene.polygons[0].corners[0]], Vec3(0, 0, 1));
-    EXPECT_NEAR(total_area(scene), 1 + 0.5 + 0.65, rounding);
+    EXPECT_NEAR(total_area(scene), 1 + 0.5 + 0.75, rounding);
     ASSERT_EQ(scene.surfaces.size(), 3U);
     EXPECT_EQ(scene.surfaces[0].name, "floor");
     EXPECT_EQ(scene.surfaces[1].name, "lamp");
@@ -270,9 +270,13 @@ TEST(GeneralGeometry, ThreeDsIsTurnedUp) {
     const std::string material =
         chunk(0xafff, chunk(0xa000, "oak" + zero) +
                           chunk(0xa020, chunk(0x0010, bytes_of<float>({.5, .25, .125}))));
+    // The object's place in the hierarchy: at its root.
+    const std::string hierarchy =
+        chunk(0xb000, chunk(0xb002, chunk(0xb010, "table" + zero + bytes_of<u16>({0, 0, 0xffff}))));
     const Folder folder;
     const Scene scene = read_scene(folder.write(
-        "t.3ds", chunk(0x4d4d, chunk(0x3d3d, material + chunk(0x4000, "table" + zero + mesh)))));
+        "t.3ds",
+        chunk(0x4d4d, chunk(0x3d3d, material + chunk(0x4000, "table" + zero + mesh)) + hierarchy)));
     expect_table(scene);
     EXPECT_EQ(scene.surfaces.at(0).name, "table");
 }
@@ -333,7 +337,7 @@ TEST(GeneralGeometry, BadInputIsRefusedWithItsFile) {
     expect("text.3ds", "text", "3DS");
     expect("text.fbx", "text", "FBX");
     expect("text.ifc", "text", "IFC");
-    expect("cut.ply", "ply\nformat ascii 1.0\nelement vertex 4\n", "PLY");
+    expect("cut.ply", "ply\nformat ascii 1.0\nelement vertex 4\n", "end_header");
     expect("huge.ply",
            "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
            "property float y\nproperty float z\nend_header\n",

@@ -65,14 +65,14 @@ TEST(View3d, SubsurfacesAreCutOutOfTheirBase) {
 TEST(View3d, RolesOfSurfaces) {
     const Scene scene = parse("F 3\n" + points + window +
                               "S 1 1 2 3 4 0 0 0.5 wall\nN 2 5 6 7 8 1 0 1 hole\n"
-                              "O 3 1 2 3 0 0 0 0.5 screen\nM 4 5 6 7 0 3 0 1 mask\n");
+                              "O 3 1 2 3 4 0 0 0.5 screen\nM 4 5 6 7 0 3 0 1 mask\n");
     const auto& surfaces = scene.form_factors.surfaces;
     EXPECT_EQ(surfaces[1].role, FormFactorRole::null);
     EXPECT_EQ(surfaces[2].role, FormFactorRole::obstruction);
     EXPECT_EQ(surfaces[3].role, FormFactorRole::mask);
     EXPECT_NEAR(area_of(scene, 0), 11, 1e-12);
     EXPECT_EQ(area_of(scene, 1), 0);
-    EXPECT_NEAR(area_of(scene, 2), 5.5, 1e-12);
+    EXPECT_NEAR(area_of(scene, 2), 11.5, 1e-12);
     EXPECT_EQ(area_of(scene, 3), 0);
     EXPECT_EQ(scene.materials[scene.surfaces[2].material].reflectance, Spectrum(3, 0.0));
     ASSERT_EQ(scene.warnings.size(), 1U);

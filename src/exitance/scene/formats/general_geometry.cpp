@@ -391,7 +391,7 @@ class GeneralGeometry {
 // Memory and time that an honest file of this size needs are far below.
 CallLimits limits_for(std::size_t bytes) {
     const std::uint64_t megabytes = bytes / (1024 * 1024);
-    return {(std::uint64_t{1} << 30) + 200 * std::uint64_t{bytes}, 10 + 4 * megabytes};
+    return {(std::uint64_t{1} << 30) + 200 * std::uint64_t{bytes}, 2 + 8 * megabytes};
 }
 
 }  // namespace
@@ -410,6 +410,9 @@ Scene parse_general_geometry(const std::filesystem::path& path, const std::strin
     // Archives in the place of XML would be unpacked. XML has no such control characters.
     if (std::string_view(kind.extension) == ".dae" && bytes.find("PK\x05\x06") != std::string::npos)
         refuse("it is an archive");
+    // Assimp 5.2 looks for it for ever.
+    if (std::string_view(kind.extension) == ".ply" && bytes.find("end_header") == std::string::npos)
+        refuse("its header has no end_header");
     const bool obj = std::string_view(kind.extension) == ".obj";
     ImportedScene imported;
     try {
