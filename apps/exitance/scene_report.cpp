@@ -91,7 +91,8 @@ SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
 std::string SceneReport::text() const {
     return fmt::format("{}\n{}: {}, {}\n\n", scene_.title, file_.string(), format_name(file_),
                        quantity_text(scene_.quantity)) +
-           notes_text() + geometry_text() + materials_text() + light_text() + views_text() + problems_text();
+           notes_text() + geometry_text() + materials_text() + light_text() + views_text() +
+           problems_text();
 }
 
 std::string SceneReport::notes_text() const {
