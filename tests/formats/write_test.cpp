@@ -127,7 +127,9 @@ void expect_camera(const Scene& scene) {
 }
 
 void expect_normals(const Scene& scene) {
-    const Vec3 expected = normalized(Vec3{0, 0.1, 1});
+    // Turned with what is up: y in the room, z in MGF.
+    const bool z_up = scene.up == Vec3{0, 0, 1};
+    const Vec3 expected = normalized(z_up ? Vec3{0, -1, 0.1} : Vec3{0, 0.1, 1});
     std::size_t smooth = 0;
     for (const Polygon& polygon : scene.polygons)
         for (const std::uint32_t i : polygon.indices())
@@ -184,6 +186,20 @@ TEST(Write, MgfKeepsColoursThroughTheirChromaticity) {
     EXPECT_TRUE(scene.materials[1].two_sided);
     expect_normals(scene);
     EXPECT_EQ(lost, std::vector<std::string>{"1 cameras are left out"});
+}
+
+TEST(Write, WhatIsUpStaysUp) {
+    const Folder folder;
+    for (const char* name : {"t.mgf", "t.rad"}) {
+        const Scene scene = written(name).scene;
+        EXPECT_EQ(scene.up, Vec3(0, 0, 1));
+        EXPECT_EQ(scene.bounds().upper, Vec3(2, 0, 2));  // the lamp hangs 2 m above
+        EXPECT_EQ(scene.bounds().lower, Vec3(0, -3, 0));
+        write_scene(scene, folder.path() / "back.glb");
+        const Scene back = read_scene(folder.path() / "back.glb");
+        EXPECT_EQ(back.bounds().upper, Vec3(2, 2, 3));
+        EXPECT_EQ(back.bounds().lower, Vec3(0, 0, 0));
+    }
 }
 
 TEST(Write, RadianceKeepsFluxAtItsEfficacy) {

@@ -14,7 +14,8 @@ namespace exitance {
 std::vector<std::string> writable_endings();
 
 /// Writes `scene` as the ending of `path` says, whole or not at all; of OBJ also the .mtl, of AFIT
-/// geometry also the .display beside it. Returns what the format cannot carry, a sentence each.
+/// geometry also the .display beside it. Turned so that what is up in `scene` is up by the format's
+/// convention, if it has one. Returns what the format cannot carry, a sentence each.
 /// Throws Error(could_not_finish), Error(wrong_use) for other endings.
 std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& path);
 
