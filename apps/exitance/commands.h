@@ -8,6 +8,7 @@ class App;
 
 namespace exitance::cli {
 
+void add_convert(CLI::App& app);
 void add_info(CLI::App& app);
 void add_manual(CLI::App& app);
 void add_prorad(CLI::App& app);

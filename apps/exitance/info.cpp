@@ -31,7 +31,8 @@ class InfoCommand {
         command
             .add_option(
                 "file", file_,
-                "a scene (.toml, .glb, .gltf, .mgf, .rad, .geom), a solution (.glb that solve "
+                "a scene (.toml, .glb, .gltf, .mgf, .rad, .geom, .vs3, .obj, .ply, .stl, .fbx, "
+                ".dae, .3ds, .ifc), a solution (.glb that solve "
                 "wrote) or a luminaire's photometry (.ies, .ldt)")
             ->required();
         command

@@ -68,7 +68,7 @@ class ProradCommand {
         const AfitDisplay display = read_afit_display(display_);
         Scene scene = read_afit_geometry(geometry_);
         scene.cameras.push_back(camera_of(display));
-        if (!reporting_.quiet) print_warnings(scene.warnings);
+        if (!reporting_.quiet) print_findings(scene);
 
         const Interrupt interrupt;
         const Stopwatch watch;

@@ -144,7 +144,7 @@ class RenderCommand {
     }
 
     Solution lit(const Scene& scene) const {
-        if (!reporting_.quiet) print_warnings(scene.warnings);
+        if (!reporting_.quiet) print_findings(scene);
         SolveOptions options;
         const Options declared = describe(options);
         for (const Setting& setting : scene.settings) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/scene/formats/general_geometry.h"
 #include "exitance/scene/groups.h"
 #include "exitance/scene/spectrum.h"
 #include "human_number.h"
@@ -20,6 +21,10 @@ std::string format_name(const std::filesystem::path& file) {
     const std::string extension = file.extension().string();
     if (extension == ".toml") return "lighting project";
     if (extension == ".gltf" || extension == ".glb") return "glTF 2.0";
+    if (extension == ".mgf") return "MGF";
+    if (extension == ".rad") return "Radiance";
+    if (extension == ".vs3") return "View3D";
+    if (is_general_geometry(file)) return "geometry by Assimp";
     return extension == ".geom" ? "AFIT geometry" : "scene";
 }
 
@@ -86,7 +91,15 @@ SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
 std::string SceneReport::text() const {
     return fmt::format("{}\n{}: {}, {}\n\n", scene_.title, file_.string(), format_name(file_),
                        quantity_text(scene_.quantity)) +
-           geometry_text() + materials_text() + light_text() + views_text() + problems_text();
+           notes_text() + geometry_text() + materials_text() + light_text() + views_text() +
+           problems_text();
+}
+
+std::string SceneReport::notes_text() const {
+    std::string out;
+    for (const Problem& note : scene_.notes)
+        out += fmt::format("{}: {}\n", note.place.text(), note.what);
+    return out.empty() ? out : out + "\n";
 }
 
 std::string SceneReport::geometry_text() const {

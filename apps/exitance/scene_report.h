@@ -34,6 +34,7 @@ class SceneReport {
     std::string json() const;
 
   private:
+    std::string notes_text() const;
     std::string geometry_text() const;
     std::string materials_text() const;
     std::string light_text() const;

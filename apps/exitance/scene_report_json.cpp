@@ -100,6 +100,9 @@ std::string SceneReport::json() const {
     out["grids"] = json_of(scene_.grids);
     Json& settings = out["settings"] = Json::object();
     for (const Setting& setting : scene_.settings) settings[setting.name] = setting.value;
+    Json& notes = out["notes"] = Json::array();
+    for (const Problem& note : scene_.notes)
+        notes.push_back({{"place", json_of(note.place)}, {"what", note.what}});
     Json& problems = out["problems"] = Json::array();
     for (const Problem& problem : problems_)
         problems.push_back({{"place", json_of(problem.place)}, {"what", problem.what}});

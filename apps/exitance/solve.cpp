@@ -28,7 +28,10 @@ class SolveCommand {
         : given_(command, "Solving", describe(options_)),
           reading_(command, "Reading a scene", describe(read_options_)) {
         command
-            .add_option("scene", scene_, "what to light: .toml, .glb, .gltf, .mgf, .rad or .geom")
+            .add_option(
+                "scene", scene_,
+                "what to light: .toml, .glb, .gltf, .mgf, .rad, .geom, .vs3, .obj, .ply, .stl, "
+                ".fbx, .dae, .3ds or .ifc")
             ->required();
         command.add_option("--output,-o", output_, "the solution: a glTF file")
             ->type_name("file.glb")
@@ -50,7 +53,7 @@ class SolveCommand {
             throw Error(Fault::wrong_use,
                         "'" + scene_.string() + "' is a solution already, expected a scene");
         const Scene scene = read_scene(scene_, read_options_);
-        if (!reporting_.quiet) print_warnings(scene.warnings);
+        if (!reporting_.quiet) print_findings(scene);
         given_.apply(scene.settings);
 
         const Interrupt interrupt;

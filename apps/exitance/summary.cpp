@@ -37,9 +37,11 @@ std::string energy_line(const Solution& solution) {
 
 }  // namespace
 
-void print_warnings(const std::vector<Problem>& warnings) {
+void print_findings(const Scene& scene) {
+    for (const Problem& note : scene.notes)
+        std::fprintf(stderr, "note: %s: %s\n", note.place.text().c_str(), note.what.c_str());
     std::size_t number = 0;
-    for (const Problem& warning : warnings) {
+    for (const Problem& warning : scene.warnings) {
         const std::string place = warning.place.text();
         std::fprintf(stderr, "warning %zu: %s%s%s\n", ++number, place.c_str(),
                      place.empty() ? "" : ": ", warning.what.c_str());

@@ -14,8 +14,8 @@ namespace exitance::cli {
 /// Said after Ctrl-C.
 inline constexpr const char* stopped_early = "stopped early; what is solved so far is kept";
 
-/// One line per warning of a reader, on stderr.
-void print_warnings(const std::vector<Problem>& warnings);
+/// One line on stderr per thing that the readers took for granted, and per warning.
+void print_findings(const Scene& scene);
 
 /// The solution in a few lines: size, energy balance, error estimate, work.
 std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds);

@@ -9,12 +9,14 @@ SOURCES = {".h", ".cpp"}
 SCRIPTS = {".py", ".sh", ".cmake", ".mjs", ".js", ".ts"}
 MAX_FILES_OF_RUN = 8
 MAX_LINES_OF_PIPELINE = 40
-HEAVY = re.compile(r"(CLI/|toml\+\+/|tiny_gltf\.h|nlohmann/json\.hpp|OpenEXR/|gtest/|rapidcheck)")
+HEAVY = re.compile(r"(CLI/|assimp/|toml\+\+/|tiny_gltf\.h|nlohmann/json\.hpp|OpenEXR/|gtest/|rapidcheck)")
 VAGUE = {"util", "utils", "misc", "common", "helpers"}
 PRINTS = re.compile(
     r"\b(?:v?f?printf|fputs|puts|putchar|perror|fmt::print|std::print|"
     r"exit|_exit|_Exit|quick_exit|abort|std::terminate)\s*\(|"
     r"\bstd::(?:cout|cerr|clog)\b|\b(?:stdout|stderr)\b")
+# Runs what may crash in a child process, which has to end without returning.
+ENDS_ITS_CHILD = Path("src/exitance/scene/formats/contained_call.cpp")
 # Written in two halves, so that this file does not name them itself.
 REGISTRIES = re.compile("|".join(re.escape(a + b) for a, b in [
     ("registry.npm", "js.org"), ("npm", "js.com"), ("py", "pi.org"), ("pythonhosted", ".org"),
@@ -116,7 +118,8 @@ def crowded_run(root):
 def printing_library(root):
     """The library returns or throws; only apps/ print or exit."""
     return [f"{path}:{number}: {line.strip()}" for path in library(root)
-            for number, line in code_lines(root, path) if PRINTS.search(line)]
+            for number, line in code_lines(root, path) if PRINTS.search(line)
+            and not (path == ENDS_ITS_CHILD and line.strip() == "::_exit(sent ? 0 : 1);")]
 
 
 def long_pipeline(root):

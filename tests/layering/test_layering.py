@@ -96,6 +96,12 @@ class TheRules(unittest.TestCase):
             self.write("src/exitance/mesh/bad.cpp", SPDX + f"void f() {{ {call} }}\n")
             self.assertEqual(len(house.printing_library(self.root)), 1, call)
 
+    def test_one_child_process_may_end(self):
+        self.write(str(house.ENDS_ITS_CHILD), SPDX + "    ::_exit(sent ? 0 : 1);\n")
+        self.expect(house.printing_library)
+        self.write(str(house.ENDS_ITS_CHILD), SPDX + "    ::_exit(2);\n")
+        self.assertEqual(len(house.printing_library(self.root)), 1)
+
     def test_long_pipeline(self):
         self.write("src/exitance/pipeline.cpp",
                    SPDX + "Solution light(const Scene&) {\n" + "    step();\n" * 39 + "}\n")

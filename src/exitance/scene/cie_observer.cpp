@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "exitance/math/vector.h"
+
 namespace exitance {
 
 namespace {
@@ -96,6 +98,14 @@ std::array<double, 3> integral(const SampledSpectrum& spectrum) {
     return sum;
 }
 
+// Rec. 709 under its white of what looks so under equal energy, but for the luminance.
+std::array<double, 3> adapted_rgb(const std::array<double, 3>& xyz) {
+    std::array<double, 3> cones = times(bradford, xyz);
+    const auto from = times(bradford, {1, 1, 1}), to = times(bradford, d65);
+    for (std::size_t k = 0; k < 3; ++k) cones[k] *= to[k] / from[k];
+    return times(rec709, times(from_bradford, cones));
+}
+
 }  // namespace
 
 Xyz xyz_of_spectrum(const SampledSpectrum& spectrum) {
@@ -120,16 +130,28 @@ SampledSpectrum black_body(double kelvin) {
 }
 
 Spectrum rgb_of(const Xyz& colour) {
-    std::array<double, 3> cones = times(bradford, {colour.x, colour.y, colour.z});
-    const auto from = times(bradford, {1, 1, 1}), to = times(bradford, d65);
-    for (std::size_t k = 0; k < 3; ++k) cones[k] *= to[k] / from[k];
-    const auto rgb = times(rec709, times(from_bradford, cones));
+    const auto rgb = adapted_rgb({colour.x, colour.y, colour.z});
     Spectrum out(rgb.begin(), rgb.end());
     // Adaptation moves luminance a little; it is what was asked for.
     const double now = luminance(out);
     if (now > 0)
         for (double& band : out) band *= colour.y / now;
     return out;
+}
+
+Xyz xyz_of_rgb(const Spectrum& rgb) {
+    // Cramer's rule with the images of the unit colours.
+    const auto image = [](const std::array<double, 3>& colour) {
+        const auto v = adapted_rgb(colour);
+        return Vec3{v[0], v[1], v[2]};
+    };
+    const Vec3 x = image({1, 0, 0}), y = image({0, 1, 0}), z = image({0, 0, 1});
+    const Vec3 wanted{rgb[0], rgb[1], rgb[2]};
+    const double all = dot(x, cross(y, z));
+    const Vec3 found{dot(wanted, cross(y, z)) / all, dot(x, cross(wanted, z)) / all,
+                     dot(x, cross(y, wanted)) / all};
+    const double scale = found.y > 0 ? luminance(rgb) / found.y : 0;
+    return {found.x * scale, found.y * scale, found.z * scale};
 }
 
 double gamut_share(const Spectrum& rgb, double most) {

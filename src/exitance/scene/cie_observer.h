@@ -36,6 +36,8 @@ SampledSpectrum black_body(double kelvin);
 /// what reflects all wavelengths alike has three equal bands. Luminance is kept; colours that RGB
 /// cannot show have negative bands.
 Spectrum rgb_of(const Xyz& colour);
+/// The colour that rgb_of() shows as `rgb`; of the same luminance.
+Xyz xyz_of_rgb(const Spectrum& rgb);
 /// How far the bands of `rgb` can move from grey of the same luminance before one leaves
 /// [0, `most`]: 1 = as they are, 0 = grey.
 double gamut_share(const Spectrum& rgb, double most);

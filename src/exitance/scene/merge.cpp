@@ -82,6 +82,14 @@ void merge(Scene& scene, Scene part, const Transform& placing) {
         grid.normal = normalized(placing.normal(grid.normal));
     }
     for (Luminaire& luminaire : part.luminaires) place(luminaire, placing);
+    const auto of = static_cast<std::uint32_t>(scene.form_factors.surfaces.size());
+    for (FormFactorSurface& asked : part.form_factors.surfaces) {
+        asked.surface += surfaces;
+        if (asked.base) *asked.base += of;
+        if (asked.combine) *asked.combine += of;
+    }
+    append(scene.form_factors.surfaces, part.form_factors.surfaces);
+    append(scene.form_factors.options, part.form_factors.options);
     append(scene.polygons, part.polygons);
     append(scene.surfaces, part.surfaces);
     append(scene.materials, part.materials);
@@ -90,6 +98,7 @@ void merge(Scene& scene, Scene part, const Transform& placing) {
     append(scene.grids, part.grids);
     append(scene.settings, part.settings);
     append(scene.warnings, part.warnings);
+    append(scene.notes, part.notes);
 }
 
 }  // namespace exitance

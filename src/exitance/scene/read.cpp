@@ -6,12 +6,15 @@
 #include <algorithm>
 
 #include "exitance/scene/formats/afit.h"
+#include "exitance/scene/formats/afit_reflectance.h"
+#include "exitance/scene/formats/general_geometry.h"
 #include "exitance/scene/formats/gltf.h"
 #include "exitance/scene/formats/lamp_file.h"
 #include "exitance/scene/formats/mgf.h"
 #include "exitance/scene/formats/project.h"
 #include "exitance/scene/formats/rad.h"
 #include "exitance/scene/formats/source_text.h"
+#include "exitance/scene/formats/view3d.h"
 #include "exitance/scene/mend.h"
 
 namespace exitance {
@@ -55,6 +58,7 @@ class Nesting {
 // A display file beside a geometry file of the same stem says who looks.
 Scene read_afit_with_display(const std::filesystem::path& path, std::string_view text) {
     Scene scene = parse_afit_geometry(path.string(), text);
+    apply_afit_reflectances(scene, path);
     std::filesystem::path display = path;
     display.replace_extension(".display");
     std::error_code ignored;
@@ -78,15 +82,19 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
         if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes);
         if (extension == ".mgf") return parse_mgf(path, std::move(bytes), options);
         if (extension == ".rad") return parse_rad(path, std::move(bytes), options);
+        if (extension == ".vs3") return parse_view3d(path, bytes, options);
+        if (is_general_geometry(path)) return parse_general_geometry(path, bytes, options);
         if (extension == ".geom" || looks_like_afit_geometry(bytes))
             return read_afit_with_display(path, bytes);
         if (looks_like_gltf(bytes)) return parse_gltf(path, bytes);
         if (is_lamp_file(path))
             throw Error({path.string(), 0, 0},
                         "a luminaire, not a scene: a project (.toml) places it in one");
-        throw Error({path.string(), 0, 0},
-                    "not a scene that can be read, expected a project (.toml), glTF (.gltf, .glb), "
-                    "MGF (.mgf), Radiance (.rad) or AFIT geometry (.geom)");
+        throw Error(
+            {path.string(), 0, 0},
+            "not a scene that can be read, expected a project (.toml), glTF (.gltf, .glb), "
+            "MGF (.mgf), Radiance (.rad), AFIT geometry (.geom), View3D (.vs3), .obj, .ply, "
+            ".stl, .fbx, .dae, .3ds or .ifc");
     };
     Scene scene = read();
     nesting.leave();

@@ -11,9 +11,11 @@
 
 namespace exitance {
 
-/// Reads any supported scene: AFIT geom (.geom), glTF 2.0 (.gltf, .glb), MGF (.mgf), Radiance
-/// (.rad), lighting project (.toml). Throws Error(bad_input) with file:line:column. What was mended
-/// is listed in Scene::warnings; with `options.strict`, the first of them is thrown.
+/// Reads any supported scene: lighting project (.toml), glTF 2.0 (.gltf, .glb), MGF (.mgf),
+/// Radiance
+/// (.rad), AFIT geom (.geom), View3D (.vs3), .obj, .ply, .stl, .fbx, .dae, .3ds, .ifc. Throws
+/// Error(bad_input) with file:line:column. What was mended is listed in Scene::warnings; with
+/// `options.strict`, the first of them is thrown.
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options = {});
 
 }  // namespace exitance

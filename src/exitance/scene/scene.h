@@ -12,6 +12,7 @@
 #include "exitance/math/box.h"
 #include "exitance/math/vector.h"
 #include "exitance/run/error.h"
+#include "exitance/scene/form_factor_setup.h"
 #include "exitance/scene/luminaire.h"
 #include "exitance/scene/spectrum.h"
 
@@ -115,8 +116,10 @@ struct Scene {
     std::vector<Luminaire> luminaires;  ///< lamps without geometry
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;
+    FormFactorSetup form_factors;   ///< from a View3D file
     std::vector<Setting> settings;  ///< from [solve] of a project file
     std::vector<Problem> warnings;  ///< from the readers
+    std::vector<Problem> notes;     ///< what the readers took for granted; nothing is wrong
 
     /// Corners of a polygon; only the first `size()` are meaningful.
     std::array<Vec3, 4> corners(const Polygon& polygon) const;

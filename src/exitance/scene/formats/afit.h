@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <iosfwd>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -39,5 +40,10 @@ Scene read_afit_geometry(const std::filesystem::path& path);
 /// Reads a display file. Throws Error(bad_input) with file:line:column.
 AfitDisplay parse_afit_display(const std::string& file, std::string_view text);
 AfitDisplay read_afit_display(const std::filesystem::path& path);
+
+/// Writes a display file; `out` is left for the caller to check.
+void write_afit_display(const AfitDisplay& display, std::ostream& out);
+/// What a display file says of a camera; 480 pixels high.
+AfitDisplay display_of(const Camera& camera);
 
 }  // namespace exitance

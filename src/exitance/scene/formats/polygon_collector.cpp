@@ -79,6 +79,13 @@ void PolygonCollector::start_surface(const std::string& name, std::uint32_t mate
     surface_ = surface_of(name, material, place);
 }
 
+void PolygonCollector::use_surface(std::uint32_t surface) {
+    surface_ = surface;
+    name_ = scene_.surfaces[surface].name;
+    material_ = scene_.surfaces[surface].material;
+    surface_place_ = scene_.surfaces[surface].place;
+}
+
 void PolygonCollector::add_polygon(std::span<const Corner> corners, std::uint32_t surface,
                                    const Place& place) {
     Polygon polygon;

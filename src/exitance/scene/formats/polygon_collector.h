@@ -33,6 +33,9 @@ class PolygonCollector {
     /// What is added from now on belongs to the surface of this name and material.
     void start_surface(const std::string& name, std::uint32_t material, const Place& place);
 
+    /// The same for a surface that the scene has already.
+    void use_surface(std::uint32_t surface);
+
     /// A face of three corners or more, planar as far as its file is exact; `place` is where it
     /// was declared. Shading normals count for smoothness only, never for the side; those more
     /// than 45° from the face are left out.
