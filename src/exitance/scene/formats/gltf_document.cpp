@@ -9,6 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "exitance/scene/formats/gltf_compression.h"
 #include "exitance/scene/formats/gltf_resources.h"
 #include "exitance/scene/formats/source_text.h"
 
@@ -152,6 +153,29 @@ double load_component(const unsigned char* bytes, int type, bool normalised) {
     }
 }
 
+// Draco's triangles have no bytes of their own, which the loader would miss; decompress_gltf()
+// brings them back.
+void leave_out_draco_indices(nlohmann::json& gltf) {
+    if (!gltf.contains("meshes")) return;
+    for (nlohmann::json& mesh : gltf["meshes"])
+        for (nlohmann::json& primitive : mesh["primitives"])
+            if (primitive.contains("extensions") && primitive["extensions"].is_object() &&
+                primitive["extensions"].contains("KHR_draco_mesh_compression"))
+                primitive.erase("indices");
+}
+
+// Buffers without bytes, which only readers that know no EXT_meshopt_compression would miss.
+void stand_in_for_fallbacks(nlohmann::json& gltf) {
+    if (!gltf.contains("buffers")) return;
+    for (nlohmann::json& buffer : gltf["buffers"])
+        if (!buffer.contains("uri") && buffer.contains("extensions") &&
+            buffer["extensions"].is_object() &&
+            buffer["extensions"].contains("EXT_meshopt_compression")) {
+            buffer["byteLength"] = 1;
+            buffer["uri"] = "data:application/octet-stream;base64,AA==";
+        }
+}
+
 }  // namespace
 
 GltfParts split_gltf(const std::string& file, std::string_view bytes) {
@@ -185,6 +209,8 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
                           const JsonText& json) {
     nlohmann::json used = json.root();
     for (const char* section : unused_sections) used.erase(section);
+    stand_in_for_fallbacks(used);
+    leave_out_draco_indices(used);
     std::string text = used.dump();
     if (text.size() > 0xf0000000U || parts.binary.size() > 0xf0000000U)
         json.refuse("", "is larger than 4 GB");
@@ -216,6 +242,7 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
     }
     if (!loaded || !error.empty())
         json.refuse("", error.empty() ? "cannot be read as glTF" : first_line(error));
+    decompress_gltf(model, json);
     return model;
 }
 
