@@ -9,6 +9,7 @@
 #include "exitance/scene/formats/general_geometry.h"
 #include "exitance/scene/groups.h"
 #include "exitance/scene/spectrum.h"
+#include "exitance/scene/texture_map.h"
 #include "human_number.h"
 
 namespace exitance::cli {
@@ -72,7 +73,7 @@ SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
         ++facts.polygons;
         if (!facts.material->emits()) continue;
         const double emitting = area * (facts.material->two_sided ? 2 : 1);
-        const double flux = emitting * luminance(facts.material->exitance);
+        const double flux = emitting * luminance(mean_exitance(scene, polygon));
         LampFacts& lamp = groups_[groups.group_of_surface[polygon.surface]];
         lamp.area += emitting;
         lamp.flux += flux;
@@ -134,6 +135,10 @@ std::string SceneReport::materials_text() const {
                         luminance(m.reflectance), bands_text(scene_, m.reflectance),
                         materials_[i].polygons == 0 ? std::string("unused")
                                                     : fmt::format("{:.4g} m²", materials_[i].area));
+        if (m.reflectance_pattern)
+            out +=
+                fmt::format(", texture of {} × {}", m.reflectance_pattern.texture->picture().width,
+                            m.reflectance_pattern.texture->picture().height);
         if (m.two_sided) out += ", two-sided";
         if (!m.specular.empty()) out += fmt::format(", mirrors {:.3g}", luminance(m.specular));
         if (m.transmits())
@@ -143,7 +148,8 @@ std::string SceneReport::materials_text() const {
             out +=
                 fmt::format(", emits {}{}",
                             human_quantity(luminance(m.exitance), exitance_unit(scene_.quantity)),
-                            bands_text(scene_, m.exitance));
+                            bands_text(scene_, m.exitance)) +
+                (m.exitance_pattern ? " on the mean of its texture" : "");
         if (m.reflectance_file) out += fmt::format(", reflectance file {}", *m.reflectance_file);
         out += "\n";
     }

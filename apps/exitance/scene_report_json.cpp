@@ -77,7 +77,7 @@ std::string SceneReport::json() const {
              {"flux", flux_},
              {"flux_unit", flux_unit(scene_.quantity)}};
     Json& materials = out["materials"] = Json::array();
-    for (const MaterialFacts& facts : materials_)
+    for (const MaterialFacts& facts : materials_) {
         materials.push_back({{"name", facts.material->name},
                              {"reflectance", facts.material->reflectance},
                              {"luminous_reflectance", luminance(facts.material->reflectance)},
@@ -88,6 +88,13 @@ std::string SceneReport::json() const {
                              {"two_sided", facts.material->two_sided},
                              {"area", facts.area},
                              {"polygons", facts.polygons}});
+        for (const auto& [key, pattern] :
+             {std::pair{"reflectance_texture", &facts.material->reflectance_pattern},
+              std::pair{"exitance_texture", &facts.material->exitance_pattern}})
+            if (*pattern)
+                materials.back()[key] = {pattern->texture->picture().width,
+                                         pattern->texture->picture().height};
+    }
     Json& groups = out["groups"] = Json::array();
     if (flux_ > 0)
         for (const LampFacts& group : groups_)

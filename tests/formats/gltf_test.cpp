@@ -236,8 +236,8 @@ TEST(Gltf, ErrorsNameThePlaceInTheText) {
     refused("\"byteOffset\": 48", "\"byteOffset\": 111", ":26:5", "of a buffer of 112 bytes");
     refused("\"byteOffset\": 0", "\"byteStride\": 8", ":20:5", "8 bytes apart");
     refused("\"byteLength\": 112", "\"byteLength\": 113", ":1:1", "113");
-    refused("\"extensionsUsed\"", "\"extensionsRequired\": [\"KHR_draco_mesh_compression\"], \"x\"",
-            ":3:26", "'\"KHR_draco_mesh_compression\"'");
+    refused("\"extensionsUsed\"", "\"extensionsRequired\": [\"KHR_texture_basisu\"], \"x\"",
+            ":3:26", "'\"KHR_texture_basisu\"'");
 }
 
 TEST(Gltf, IndicesBeyondTheVerticesAreRefused) {

@@ -26,13 +26,13 @@ double filter_offset(double u) {
     return 0.5 * (low + high);
 }
 
-using Pattern = std::vector<std::array<double, 2>>;
+using SamplePattern = std::vector<std::array<double, 2>>;
 
 /// Patterns of sample positions that neighbouring pixels draw from, many enough that none shows.
 /// Their density is the filter's, so that all samples weigh the same (Ernst, Stamminger & Greiner
 /// 2006).
-std::vector<Pattern> filter_patterns(std::uint32_t samples, std::uint64_t seed) {
-    std::vector<Pattern> patterns(64);
+std::vector<SamplePattern> filter_patterns(std::uint32_t samples, std::uint64_t seed) {
+    std::vector<SamplePattern> patterns(64);
     for (std::size_t k = 0; k < patterns.size(); ++k)
         for (std::uint32_t s = 0; s < samples; ++s) {
             const auto [u, v] = low_discrepancy(hash_bits(seed, k), s);
@@ -95,7 +95,7 @@ Raycast raycast(const Surfaces& surfaces, const CameraRays& camera, std::uint32_
                 std::uint32_t height, std::uint32_t samples, std::uint64_t seed,
                 const std::function<Vec3f(const ViewHit&)>& shade) {
     Raycast out{Image(width, height), std::vector<float>(std::size_t{width} * height, 0.0f)};
-    const std::vector<Pattern> patterns = filter_patterns(samples, seed);
+    const std::vector<SamplePattern> patterns = filter_patterns(samples, seed);
     constexpr std::uint32_t tile = 16;
     const std::uint32_t across = (width + tile - 1) / tile, down = (height + tile - 1) / tile;
     parallel_for(

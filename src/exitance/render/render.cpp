@@ -57,9 +57,7 @@ class WeightedLight {
                 H_[v * bands_ + b] = static_cast<float>(sum);
             }
         });
-        for (const SolutionPart& part : s.parts)
-            for (std::size_t b = 0; b < bands_; ++b)
-                E_.push_back(weights[part.group] * s.materials[part.material].exitance[b]);
+        for (const SolutionPart& part : s.parts) weight_of_emission_.push_back(weights[part.group]);
         luminance_ = luminance_weights(bands_);
     }
 
@@ -71,27 +69,34 @@ class WeightedLight {
         return sum;
     }
 
-    double exitance(const SurfacePlace& place, std::size_t band) const {
+    /// Calls `take(band, B)` for B = E + ρ H of each band, E and ρ as their patterns are there.
+    template <class Take>
+    void exitance(const SurfacePlace& place, const Take& take) const {
         const Solution& s = surfaces_.solution();
-        const SolutionPart& part = surfaces_.part(place.triangle);
-        const auto index = static_cast<std::size_t>(&part - s.parts.data());
-        return E_[index * bands_ + band] +
-               s.materials[part.material].reflectance[band] * irradiance(place, band);
+        const auto index =
+            static_cast<std::size_t>(&surfaces_.part(place.triangle) - s.parts.data());
+        Surfaces::PatternHere room_of_rho, room_of_E;
+        const auto rho = surfaces_.reflectance(place, room_of_rho);
+        const auto E = surfaces_.emission(place, room_of_E);
+        for (std::size_t b = 0; b < bands_; ++b)
+            take(b, weight_of_emission_[index] * E[b] + rho[b] * irradiance(place, b));
     }
 
     /// Radiance of a diffuse surface, L = B / π.
     Vec3f radiance(const SurfacePlace& place) const {
         constexpr double over_pi = 1 / std::numbers::pi;
-        if (bands_ == 3)
-            return Vec3f(Vec3{exitance(place, 0), exitance(place, 1), exitance(place, 2)} *
-                         over_pi);
+        if (bands_ == 3) {
+            Vec3 rgb;
+            exitance(place, [&](std::size_t b, double B) { rgb[b] = B; });
+            return Vec3f(rgb * over_pi);
+        }
         const auto grey = static_cast<float>(over_pi * total_exitance(place));
         return {grey, grey, grey};
     }
 
     double total_exitance(const SurfacePlace& place) const {
         double sum = 0;
-        for (std::size_t b = 0; b < bands_; ++b) sum += luminance_[b] * exitance(place, b);
+        exitance(place, [&](std::size_t b, double B) { sum += luminance_[b] * B; });
         return sum;
     }
     double total_irradiance(const SurfacePlace& place) const {
@@ -103,8 +108,8 @@ class WeightedLight {
   private:
     const Surfaces& surfaces_;
     std::size_t bands_ = 0;
-    std::vector<float> H_;   // vertices × bands
-    std::vector<double> E_;  // parts × bands
+    std::vector<float> H_;                    // vertices × bands
+    std::vector<double> weight_of_emission_;  // per part
     Spectrum luminance_;
 };
 

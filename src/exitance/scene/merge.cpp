@@ -32,8 +32,10 @@ void convert_emission(Scene& part, Quantity wanted) {
     part.warnings.push_back(
         {*first, fmt::format("emission in {} is taken as {}{}", name(part.quantity), name(wanted),
                              factor == 1 ? "" : fmt::format(" at {} lm/W", luminous_efficacy))});
-    for (Material& material : part.materials)
+    for (Material& material : part.materials) {
         for (double& e : material.exitance) e *= factor;
+        for (double& e : material.exitance_pattern.factor) e *= factor;
+    }
     for (Luminaire& luminaire : part.luminaires) luminaire.multiplier *= factor;
 }
 
@@ -61,6 +63,8 @@ void merge(Scene& scene, Scene part, const Transform& placing) {
     const auto materials = static_cast<std::uint32_t>(scene.materials.size());
     for (std::size_t i = 0; i < part.points.size(); ++i)
         scene.add_point(placing.point(part.points[i]), normalized(placing.normal(part.normals[i])));
+    for (std::uint32_t i = 0; i < part.texture_coordinates.size(); ++i)
+        scene.set_texture_coordinates(points + i, part.texture_coordinates[i]);
     for (Polygon& polygon : part.polygons) {
         for (std::uint32_t& corner : polygon.corners)
             if (corner != Polygon::none) corner += points;

@@ -79,14 +79,14 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
                                  [&](const std::filesystem::path& file, const Place& at) {
                                      return read_by_kind(file, at, nesting, options);
                                  });
-        if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes);
+        if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes, options);
         if (extension == ".mgf") return parse_mgf(path, std::move(bytes), options);
         if (extension == ".rad") return parse_rad(path, std::move(bytes), options);
         if (extension == ".vs3") return parse_view3d(path, bytes, options);
         if (is_general_geometry(path)) return parse_general_geometry(path, bytes, options);
         if (extension == ".geom" || looks_like_afit_geometry(bytes))
             return read_afit_with_display(path, bytes);
-        if (looks_like_gltf(bytes)) return parse_gltf(path, bytes);
+        if (looks_like_gltf(bytes)) return parse_gltf(path, bytes, options);
         if (is_lamp_file(path))
             throw Error({path.string(), 0, 0},
                         "a luminaire, not a scene: a project (.toml) places it in one");

@@ -86,6 +86,11 @@ std::uint32_t Scene::add_point(const Vec3& point, const Vec3& normal) {
     return static_cast<std::uint32_t>(points.size() - 1);
 }
 
+void Scene::set_texture_coordinates(std::uint32_t point, const TextureCoordinates& coordinates) {
+    if (texture_coordinates.size() <= point) texture_coordinates.resize(points.size());
+    texture_coordinates[point] = coordinates;
+}
+
 std::uint32_t Scene::add_material(Material material) {
     materials.push_back(std::move(material));
     return static_cast<std::uint32_t>(materials.size() - 1);

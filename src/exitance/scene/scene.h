@@ -15,6 +15,7 @@
 #include "exitance/scene/form_factor_setup.h"
 #include "exitance/scene/luminaire.h"
 #include "exitance/scene/spectrum.h"
+#include "exitance/scene/texture.h"
 
 namespace exitance {
 
@@ -32,9 +33,9 @@ std::string irradiance_unit(Quantity quantity);
 /// Unit of flux: "W", "lm" or "".
 std::string flux_unit(Quantity quantity);
 
-/// How a surface reflects, transmits and emits, the same all over it. Radiosity is solved for
-/// `reflectance`; what is mirrored is left to whoever looks at the solution. In every band
-/// reflectance, specular, diffuse transmittance and transmittance add up to at most 1.
+/// How a surface reflects, transmits and emits; the same all over it but for patterns. Radiosity is
+/// solved for `reflectance`; what is mirrored is left to whoever looks at the solution. In every
+/// band reflectance, specular, diffuse transmittance and transmittance add up to at most 1.
 struct Material {
     std::string name;
     Spectrum reflectance;                 ///< total diffuse reflectance per band, 0 … 1
@@ -48,9 +49,12 @@ struct Material {
     Spectrum diffuse_transmittance{};     ///< per band, spread over the other side; empty = none
     Spectrum transmittance{};             ///< per band, straight through (glass); empty = none
     std::optional<double> refractive_index{};  ///< of a solid body, where the file says
+    Pattern reflectance_pattern{};  ///< over the surface; `reflectance` is its mean there
+    Pattern exitance_pattern{};     ///< over the surface; `exitance` is its mean there
 
     bool emits() const;
     bool transmits() const;
+    bool patterned() const { return reflectance_pattern || exitance_pattern; }
 };
 
 /// A named set of polygons of one material: a glTF primitive, an OBJ group, a luminaire.
@@ -72,6 +76,12 @@ struct Polygon {
 
     std::uint32_t size() const { return corners[3] == none ? 3 : 4; }
     std::span<const std::uint32_t> indices() const { return {corners.data(), size()}; }
+};
+
+/// Where a point lies on the textures of its surface's material. Only triangles have patterns.
+struct TextureCoordinates {
+    TexturePoint reflectance, exitance;
+    friend bool operator==(const TextureCoordinates&, const TextureCoordinates&) = default;
 };
 
 struct Camera {
@@ -110,6 +120,8 @@ struct Scene {
 
     std::vector<Vec3> points;   ///< [m]
     std::vector<Vec3> normals;  ///< parallel to `points`: unit shading normal, zero = geometric
+    /// Of the first points, as far as any has some; see texture_coordinates_of().
+    std::vector<TextureCoordinates> texture_coordinates;
     std::vector<Polygon> polygons;
     std::vector<Surface> surfaces;
     std::vector<Material> materials;
@@ -133,6 +145,11 @@ struct Scene {
     std::string label(std::uint32_t surface) const;
 
     std::uint32_t add_point(const Vec3& point, const Vec3& normal = {});
+    void set_texture_coordinates(std::uint32_t point, const TextureCoordinates& coordinates);
+    TextureCoordinates texture_coordinates_of(std::uint32_t point) const {
+        return point < texture_coordinates.size() ? texture_coordinates[point]
+                                                  : TextureCoordinates{};
+    }
     std::uint32_t add_material(Material material);
     std::uint32_t add_surface(std::string name, std::uint32_t material);
 };

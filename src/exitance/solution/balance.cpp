@@ -123,9 +123,10 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
     std::vector<float> reflected(columns.stride), absorbed(columns.stride);
     for (const Patch& patch : mesh.patches()) {
         const Face& face = mesh[patch.face];
-        const auto E = radiosity.emitted(face), rho = radiosity.rho(face);
+        const auto E = radiosity.emitted(face);
         mesh.for_leaves(patch.root, [&](ElementId id) {
             const Element& element = mesh[id];
+            const auto rho = radiosity.rho(id);
             radiosity.mean_irradiance(id, absorbed);
             for (std::size_t c = 0; c < columns.stride; ++c) {
                 reflected[c] = rho[c] * absorbed[c] - radiosity.shot[id][c];

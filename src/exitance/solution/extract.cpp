@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <unordered_map>
 
 #include "exitance/run/random.h"
+#include "exitance/scene/texture_map.h"
 
 namespace exitance {
 
@@ -28,8 +30,11 @@ class Extraction {
         fill_buried();
         std::vector<std::vector<std::array<std::uint32_t, 3>>> by_surface(
             radiosity_.scene.surfaces.size());
-        for (const ElementId leaf : leaves_)
-            triangulate(leaf, by_surface[mesh_.face_of(mesh_[leaf]).surface]);
+        for (const ElementId leaf : leaves_) {
+            const Face& face = mesh_.face_of(mesh_[leaf]);
+            enter(face);
+            triangulate(leaf, by_surface[face.surface]);
+        }
         for (std::size_t s = 0; s < by_surface.size(); ++s) {
             if (by_surface[s].empty()) continue;
             const Surface& surface = radiosity_.scene.surfaces[s];
@@ -47,11 +52,28 @@ class Extraction {
             std::copy_n(&rows_[v * stride], stride, out_.irradiance[VertexId(v)].begin());
         for (const Face& face : mesh_.faces())
             if (radiosity_.emits(face))
-                out_.emitters.push_back(
-                    {mesh_.corners(face), face.count, part_of_surface_[face.surface]});
+                out_.emitters.push_back({mesh_.corners(face), face.count,
+                                         part_of_surface_[face.surface], varying_emission(face)});
     }
 
   private:
+    // Vertices made from now on are of this face: of a patterned one they have a place on its
+    // textures, and are shared only with those that have the same.
+    void enter(const Face& face) {
+        const Scene& scene = radiosity_.scene;
+        maps_.reset();
+        const Material& material = scene.materials[scene.surfaces[face.surface].material];
+        if (!material.patterned()) return;
+        const Polygon& polygon = scene.polygons[face.polygon.index()];
+        maps_ = Maps{reflectance_map(scene, polygon), exitance_map(scene, polygon)};
+    }
+
+    Spectrum varying_emission(const Face& face) const {
+        const Scene& scene = radiosity_.scene;
+        if (!scene.materials[scene.surfaces[face.surface].material].exitance_pattern) return {};
+        return mean_exitance(scene, scene.polygons[face.polygon.index()]);
+    }
+
     void find_leaves() {
         live_.assign(mesh_.positions().size(), 0);
         for (const Patch& patch : mesh_.patches())
@@ -112,14 +134,44 @@ class Extraction {
     std::uint32_t append(const Vec3& position, const Vec3f& normal, std::span<const float> row) {
         out_.positions.push_back(Vec3f(position));
         out_.normals.push_back(normal);
+        if (maps_) {
+            out_.texture_coordinates.resize(out_.positions.size());
+            out_.texture_coordinates.back() = {maps_->reflectance(position),
+                                               maps_->exitance(position)};
+        }
         rows_.insert(rows_.end(), row.begin(), row.end());
         return static_cast<std::uint32_t>(out_.positions.size() - 1);
     }
 
     std::uint32_t vertex(VertexId v) {
-        const auto [slot, fresh] = index_.insert({key(mesh_[v].position, mesh_[v].smooth), 0u});
-        if (fresh) slot.value() = append(mesh_[mesh_[v].position], mesh_[v].normal, light(v));
-        return slot->second;
+        return made_at(mesh_[v].position, mesh_[v].smooth,
+                       [&] { return append(mesh_[mesh_[v].position], mesh_[v].normal, light(v)); });
+    }
+
+    /// The vertex at a place of a smooth surface, and of its textures; made when first asked for.
+    template <class Make>
+    std::uint32_t made_at(PositionId at, std::uint32_t smooth, const Make& make) {
+        const auto [slot, fresh] = index_.insert({key(at, smooth), 0u});
+        if (fresh) return slot.value() = make();
+        if (!maps_) return slot->second;
+        // A seam of the texture: one vertex for each side.
+        const TextureCoordinates wanted{maps_->reflectance(mesh_[at]), maps_->exitance(mesh_[at])};
+        for (std::uint32_t v = slot->second;; v = across_seam_[v]) {
+            if (close(out_.texture_coordinates[v], wanted)) return v;
+            const auto next = across_seam_.find(v);
+            if (next != across_seam_.end()) continue;
+            const std::uint32_t made = make();
+            across_seam_[v] = made;
+            return made;
+        }
+    }
+
+    static bool close(const TextureCoordinates& a, const TextureCoordinates& b) {
+        constexpr float rounding = 1e-4f;  // of coordinates over a few repetitions
+        const auto near = [](const TexturePoint& p, const TexturePoint& q) {
+            return std::abs(p.u - q.u) <= rounding && std::abs(p.v - q.v) <= rounding;
+        };
+        return near(a.reflectance, b.reflectance) && near(a.exitance, b.exitance);
     }
 
     static std::uint64_t key(PositionId position, std::uint32_t smooth) {
@@ -157,17 +209,15 @@ class Extraction {
     }
 
     std::uint32_t interpolated(PositionId at, std::uint32_t smooth, VertexId a, VertexId b) {
-        const auto [slot, fresh] = index_.insert({key(at, smooth), 0u});
-        if (!fresh) return slot->second;
-        const Vec3 from = mesh_[mesh_[a].position], to = mesh_[mesh_[b].position];
-        const auto t = static_cast<float>(length(mesh_[at] - from) / length(to - from));
-        std::vector<float> row(radiosity_.columns.stride);
-        for (std::size_t c = 0; c < row.size(); ++c)
-            row[c] = (1.0f - t) * light(a)[c] + t * light(b)[c];
-        const Vec3f normal = normalized(mesh_[a].normal * (1.0f - t) + mesh_[b].normal * t);
-        const std::uint32_t made = append(mesh_[at], normal, row);
-        slot.value() = made;
-        return made;
+        return made_at(at, smooth, [&] {
+            const Vec3 from = mesh_[mesh_[a].position], to = mesh_[mesh_[b].position];
+            const auto t = static_cast<float>(length(mesh_[at] - from) / length(to - from));
+            std::vector<float> row(radiosity_.columns.stride);
+            for (std::size_t c = 0; c < row.size(); ++c)
+                row[c] = (1.0f - t) * light(a)[c] + t * light(b)[c];
+            const Vec3f normal = normalized(mesh_[a].normal * (1.0f - t) + mesh_[b].normal * t);
+            return append(mesh_[at], normal, row);
+        });
     }
 
     void triangulate(ElementId leaf, std::vector<std::array<std::uint32_t, 3>>& triangles) {
@@ -216,6 +266,11 @@ class Extraction {
     std::vector<float> buried_;  ///< vertices × stride, or empty
     std::vector<float> rows_;    ///< irradiance of the vertices made so far
     tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash> index_;
+    struct Maps {
+        TextureMap reflectance, exitance;
+    };
+    std::optional<Maps> maps_;  ///< of the face whose leaves are being made into triangles
+    std::unordered_map<std::uint32_t, std::uint32_t> across_seam_;  ///< vertex → the next there
     std::vector<Mesh::Between> between_;
     std::vector<std::uint32_t> loop_;
     std::vector<std::uint32_t> part_of_surface_;
@@ -238,6 +293,7 @@ Solution extract_solution(const Radiosity& radiosity) {
     out.grids = scene.grids;
     out.scene_digest = digest(scene);
     Extraction(radiosity, out).run();
+    if (!out.texture_coordinates.empty()) out.texture_coordinates.resize(out.positions.size());
     return out;
 }
 
@@ -255,7 +311,15 @@ std::string digest(const Scene& scene) {
         for (const double r : material.reflectance) number(r);
         for (const double e : material.exitance) number(e);
         add(material.two_sided);
+        for (const Pattern* pattern : {&material.reflectance_pattern, &material.exitance_pattern}) {
+            if (!*pattern) continue;
+            add(pattern->texture->digest());
+            for (const double f : pattern->factor) number(f);
+        }
     }
+    for (const TextureCoordinates& t : scene.texture_coordinates)
+        for (const TexturePoint& p : {t.reflectance, t.exitance})
+            number(double(p.u)), number(double(p.v));
     for (const Luminaire& luminaire : scene.luminaires) {
         for (const Vec3& v : {luminaire.position, luminaire.c0, luminaire.nadir})
             number(v.x), number(v.y), number(v.z);

@@ -80,6 +80,12 @@ json extras_of(const Material& material) {
              {"two_sided", material.two_sided}};
     if (!material.group.empty()) out["group"] = material.group;
     if (material.reflectance_file) out["reflectance_file"] = *material.reflectance_file;
+    if (material.reflectance_pattern)
+        out["reflectance_pattern"] = {{"factor", material.reflectance_pattern.factor},
+                                      {"most", material.reflectance_pattern.texture->most()}};
+    if (material.exitance_pattern)
+        out["exitance_pattern"] = {{"factor", material.exitance_pattern.factor},
+                                   {"most", material.exitance_pattern.texture->most()}};
     return out;
 }
 

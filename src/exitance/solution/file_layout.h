@@ -30,8 +30,10 @@ inline std::string irradiance_attribute(std::size_t index) {
     return "_IRRADIANCE_" + std::to_string(index);
 }
 
-/// B = E + ρ H cannot be solved for H accurately where ρ is near 0, nor where E outweighs ρ H.
+/// B = E + ρ H cannot be solved for H accurately where ρ is near 0, nor where E outweighs ρ H, nor
+/// where both vary within what a vertex stands for.
 inline bool needs_irradiance(const Material& material) {
+    if (material.patterned()) return true;
     for (const double rho : material.reflectance)
         if (rho < least_invertible_reflectance) return true;
     return material.emits();

@@ -11,6 +11,7 @@
 #include "exitance/solution/file.h"
 #include "exitance/solution/file_extras.h"
 #include "exitance/solution/file_layout.h"
+#include "exitance/solution/file_textures.h"
 #include "exitance/solution/glb.h"
 
 namespace exitance {
@@ -38,6 +39,7 @@ struct Primitive {
     Node node;
     std::uint32_t material = 0, group = 0;
     Elements positions, normals, indices;
+    std::array<Elements, 2> texture_coordinates{};  ///< if the material is patterned
     std::vector<Elements> exitance, irradiance;
     std::size_t first_vertex = 0;
 };
@@ -60,7 +62,7 @@ class Reader {
         attributes_ = attributes_per_group(s_.bands.size()) * s_.groups.size();
         if (root_.has("materials"))
             for (std::size_t i = 0; i < root_["materials"].size(); ++i)
-                s_.materials.push_back(read_material(root_["materials"][i], s_.bands.size()));
+                read_material_with_patterns(root_["materials"][i]);
         if (root_.has("meshes")) read_mesh();
         if (extras.has("emitters")) read_emitters(extras["emitters"]);
         return std::move(s_);
@@ -73,8 +75,23 @@ class Reader {
     std::size_t attributes_ = 0;
     Solution s_;
     std::vector<Primitive> primitives_;
+    TexturesIn textures_{
+        root_, [this](const Node& view) {
+            const Elements bytes = elements(view, 0, view["byteLength"].count(), 1);
+            return std::string_view(reinterpret_cast<const char*>(bytes.first), bytes.count);
+        }};
 
     [[noreturn]] void refuse(const std::string& what) const { throw Error(Place{file_}, what); }
+
+    void read_material_with_patterns(const Node& node) {
+        s_.materials.push_back(read_material(node, s_.bands.size()));
+        const Node extras = node["extras"]["exitance"];
+        for (const auto& [key, pattern] :
+             {std::pair{"reflectance_pattern", &Material::reflectance_pattern},
+              std::pair{"exitance_pattern", &Material::exitance_pattern}})
+            if (extras.has(key))
+                s_.materials.back().*pattern = textures_.pattern(extras[key], s_.bands.size());
+    }
 
     /// `count` elements of `size` bytes in a bufferView, `offset` bytes from its start.
     Elements elements(const Node& view, std::uint64_t offset, std::uint64_t count,
@@ -136,12 +153,15 @@ class Reader {
         s_.positions.resize(vertices);
         s_.normals.resize(vertices);
         s_.irradiance = VertexField(vertices, s_.columns());
-        for (const Primitive& primitive : primitives_) read_vertices(primitive);
+        for (const Primitive& primitive : primitives_) {
+            read_vertices(primitive);
+            if (s_.materials[primitive.material].patterned()) read_texture_coordinates(primitive);
+        }
         read_parts();
     }
 
     Primitive primitive_at(const Node& node) const {
-        Primitive p{node, 0, 0, {}, {}, {}, {}, {}, 0};
+        Primitive p{node, 0, 0, {}, {}, {}, {}, {}, {}, 0};
         p.material = static_cast<std::uint32_t>(node["material"].index_below(s_.materials.size()));
         const Node extras = node["extras"]["exitance"];
         p.group = static_cast<std::uint32_t>(extras["group"].index_below(s_.groups.size()));
@@ -154,6 +174,13 @@ class Reader {
             for (std::size_t a = 0; a < attributes_; ++a)
                 p.irradiance.push_back(
                     attribute(attributes, irradiance_attribute(a), p.positions.count));
+        for (std::size_t i = 0; i < 2 && s_.materials[p.material].patterned(); ++i) {
+            const std::string name = fmt::format("TEXCOORD_{}", i);
+            p.texture_coordinates[i] = accessor(attributes[name], 5126, "VEC2", 8);
+            if (p.texture_coordinates[i].count != p.positions.count)
+                attributes[name].refuse(
+                    fmt::format("as many elements as POSITION, {}", p.positions.count));
+        }
         p.indices = accessor(node["indices"], 5125, "SCALAR", 4);
         return p;
     }
@@ -181,6 +208,19 @@ class Reader {
                             ? static_cast<float>(double(value[k]) / material.reflectance[first + k])
                             : value[k];
             }
+        }
+    }
+
+    void read_texture_coordinates(const Primitive& p) {
+        s_.texture_coordinates.resize(s_.positions.size());
+        for (std::size_t i = 0; i < p.positions.count; ++i) {
+            const auto at = [&](std::size_t set) {
+                const auto uv = p.texture_coordinates[set].at<std::array<float, 2>>(i);
+                if (!std::isfinite(uv[0]) || !std::isfinite(uv[1]))
+                    p.node.refuse(fmt::format("finite texture coordinates at vertex {}", i));
+                return TexturePoint{uv[0], uv[1]};
+            };
+            s_.texture_coordinates[p.first_vertex + i] = {at(0), at(1)};
         }
     }
 
@@ -237,7 +277,12 @@ class Reader {
                          record.part < s_.parts.size();
             for (const Vec3& corner : record.corners) sound = sound && is_finite(corner);
             if (!sound) node.refuse(fmt::format("3 or 4 finite corners and a part, emitter {}", i));
-            s_.emitters.push_back({record.corners, record.corner_count, record.part});
+            s_.emitters.push_back({record.corners, record.corner_count, record.part, {}});
+            if (!node.has("exitance")) continue;
+            const Node mean = node["exitance"][i];
+            if (mean.size() > 0)
+                s_.emitters.back().exitance =
+                    mean.spectrum(s_.bands.size(), std::numeric_limits<double>::max());
         }
     }
 };

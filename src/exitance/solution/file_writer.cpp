@@ -13,6 +13,7 @@
 #include "exitance/solution/file.h"
 #include "exitance/solution/file_extras.h"
 #include "exitance/solution/file_layout.h"
+#include "exitance/solution/file_textures.h"
 #include "exitance/solution/glb.h"
 #include "exitance/solution/preview.h"
 
@@ -86,7 +87,7 @@ class Sink {
 
 class Writer {
   public:
-    explicit Writer(const Solution& solution) : s_(solution) {
+    explicit Writer(const Solution& solution) : s_(solution), textures_(solution) {
         attributes_ = attributes_per_group(s_.bands.size()) * s_.groups.size();
         group_parts();
         lay_out();
@@ -99,7 +100,9 @@ class Writer {
 
   private:
     const Solution& s_;
-    std::size_t attributes_ = 0;  ///< exitance attributes per vertex
+    TexturesOut textures_;
+    std::size_t first_image_ = 0;  ///< its view
+    std::size_t attributes_ = 0;   ///< exitance attributes per vertex
     std::vector<Primitive> primitives_;
     std::size_t vertices_ = 0;
     std::vector<View> views_;
@@ -164,7 +167,30 @@ class Writer {
         if (with_irradiance)
             for (std::size_t a = 0; a < attributes_; ++a)
                 add_view(irradiance_attribute(a), with_irradiance, 12, array_buffer);
+        std::size_t patterned = 0;
+        for (const Primitive& p : primitives_)
+            if (is_patterned(p)) patterned += p.vertices.size();
+        if (patterned > 0) {
+            add_view("TEXCOORD_0", patterned, 8, array_buffer);
+            add_view("TEXCOORD_1", patterned, 8, array_buffer);
+        }
         add_view("indices", triangles, 12, element_array_buffer);
+        first_image_ = views_.size();
+        for (const std::string& image : textures_.images()) {
+            add_view("image", 1, image.size(), 0);
+            size_ += (4 - size_ % 4) % 4;  // accessors come first, but other tools may append
+        }
+    }
+
+    bool is_patterned(const Primitive& p) const {
+        return !s_.texture_coordinates.empty() && s_.materials[p.material].patterned();
+    }
+
+    /// What viewers multiply with the vertex colours; of two, the emission's, which outshines.
+    const Pattern* shown_pattern(const Material& material) const {
+        if (s_.texture_coordinates.empty()) return nullptr;
+        if (material.exitance_pattern) return &material.exitance_pattern;
+        return material.reflectance_pattern ? &material.reflectance_pattern : nullptr;
     }
 
     /// `value(column)` of the up to three columns that attribute `a` carries, the rest zero.
@@ -200,6 +226,24 @@ class Writer {
         return Vec3f(rgb);
     }
 
+    /// The same where the texture that viewers show is white.
+    Vec3f brightest_rgb(const Primitive& p, std::uint32_t vertex) const {
+        const Material& material = s_.materials[p.material];
+        const Pattern* shown = shown_pattern(material);
+        if (!shown) return total_rgb(p, vertex);
+        Vec3 rgb;
+        const std::uint32_t lit = s_.parts[p.parts[0]].group;
+        for (std::size_t b = 0; b < 3; ++b) {
+            const bool reflects = shown == &material.reflectance_pattern;
+            const double rho = reflects ? shown->factor[b] : material.reflectance[b];
+            for (std::size_t g = 0; g < s_.groups.size(); ++g)
+                rgb[b] +=
+                    s_.groups[g].weight * rho * double(s_.irradiance[VertexId(vertex)][g * 3 + b]);
+            rgb[b] += s_.groups[lit].weight * (reflects ? material.exitance[b] : shown->factor[b]);
+        }
+        return Vec3f(rgb);
+    }
+
     template <class Body>
     void for_each_vertex(const Body& body) const {
         for (const Primitive& primitive : primitives_)
@@ -220,6 +264,11 @@ class Writer {
             areas.push_back(area_of_vertex[vertex]);
         });
         const PreviewTone tone = preview_tone(colours_, areas);
+        std::size_t at = 0;
+        for_each_vertex([&](const Primitive& primitive, std::uint32_t vertex) {
+            if (is_patterned(primitive)) colours_[at] = brightest_rgb(primitive, vertex);
+            ++at;
+        });
         for (Vec3f& colour : colours_) colour = tone(colour);
     }
 
@@ -241,7 +290,7 @@ class Writer {
             accessors.push_back(std::move(entry));
             return accessors.size() - 1;
         };
-        std::uint64_t vertex = 0, irradiance_vertex = 0, triangle = 0;
+        std::uint64_t vertex = 0, irradiance_vertex = 0, triangle = 0, patterned_vertex = 0;
         for (const Primitive& p : primitives_) {
             const std::uint64_t count = p.vertices.size();
             Vector3<float> low = s_.positions[p.vertices[0]], high = low;
@@ -263,6 +312,12 @@ class Writer {
                 attributes[name] =
                     add(accessor(name, irradiance_vertex, count, float_type, "VEC3"));
             }
+            if (is_patterned(p)) {
+                for (const char* name : {"TEXCOORD_0", "TEXCOORD_1"})
+                    attributes[name] =
+                        add(accessor(name, patterned_vertex, count, float_type, "VEC2"));
+                patterned_vertex += count;
+            }
             const auto indices = add(
                 accessor("indices", 3 * triangle, 3 * p.triangles, unsigned_int_type, "SCALAR"));
             json parts = json::array();
@@ -283,12 +338,25 @@ class Writer {
     }
 
     void describe_materials(json& gltf) const {
-        for (const Material& material : s_.materials)
-            gltf["materials"].push_back(
-                {{"name", material.name},
-                 {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
-                 {"extensions", {{"KHR_materials_unlit", json::object()}}},
-                 {"extras", {{"exitance", extras_of(material)}}}});
+        for (const Material& material : s_.materials) {
+            json entry{{"name", material.name},
+                       {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 1}}},
+                       {"extensions", {{"KHR_materials_unlit", json::object()}}},
+                       {"extras", {{"exitance", extras_of(material)}}}};
+            json& extras = entry["extras"]["exitance"];
+            const auto number = [&](const Pattern& pattern, const char* key) {
+                if (pattern) extras[key]["texture"] = textures_.index(*pattern.texture);
+            };
+            number(material.reflectance_pattern, "reflectance_pattern");
+            number(material.exitance_pattern, "exitance_pattern");
+            if (const Pattern* shown = shown_pattern(material))
+                entry["pbrMetallicRoughness"]["baseColorTexture"] = {
+                    {"index", textures_.index(*shown->texture)},
+                    {"texCoord", shown == &material.exitance_pattern ? 1 : 0}};
+            gltf["materials"].push_back(std::move(entry));
+        }
+        if (!textures_.images().empty() && !primitives_.empty())
+            textures_.describe(gltf, first_image_);
         if (!s_.materials.empty()) gltf["extensionsUsed"] = {"KHR_materials_unlit"};
     }
 
@@ -330,6 +398,10 @@ class Writer {
         json extras = extras_of(s_);
         if (!s_.emitters.empty())
             extras["emitters"] = {{"bufferView", 0}, {"count", s_.emitters.size()}};
+        const auto varies = [](const Emitter& emitter) { return !emitter.exitance.empty(); };
+        if (std::any_of(s_.emitters.begin(), s_.emitters.end(), varies))
+            for (const Emitter& emitter : s_.emitters)
+                extras["emitters"]["exitance"].push_back(emitter.exitance);
         json gltf{{"asset",
                    {{"version", "2.0"},
                     {"generator", "Exitance"},
@@ -393,6 +465,12 @@ class Writer {
                 const auto H = s_.irradiance[VertexId(vertex)];
                 if (p.irradiance) sink.put(three_of(a, [&](std::size_t c) { return H[c]; }));
             });
+        for (const auto which : {&TextureCoordinates::reflectance, &TextureCoordinates::exitance})
+            for_each_vertex([&](const Primitive& p, std::uint32_t vertex) {
+                if (!is_patterned(p)) return;
+                const TexturePoint& at = s_.texture_coordinates[vertex].*which;
+                sink.put(at.u), sink.put(at.v);
+            });
         write_indices(sink);
     }
 
@@ -401,6 +479,12 @@ class Writer {
         for (const Primitive& p : primitives_) {
             for (std::uint32_t i = 0; i < p.vertices.size(); ++i) local[p.vertices[i]] = i;
             for_each_corner(p, [&](std::uint32_t vertex) { sink.put(local[vertex]); });
+        }
+        std::uint64_t written = 0;
+        for (const std::string& image : textures_.images()) {
+            for (const char byte : image) sink.put(byte);
+            written += image.size();
+            for (; written % 4 != 0; ++written) sink.put('\0');
         }
     }
 };

@@ -104,7 +104,8 @@ class Gatherer {
             if (!reached) continue;
             const std::vector<double> visible = visible_shares(block, factor, e);
             const SolutionPart& part = s_.parts[emitter.part];
-            const Spectrum& E = s_.materials[part.material].exitance;
+            const Spectrum& E =
+                emitter.exitance.empty() ? s_.materials[part.material].exitance : emitter.exitance;
             for (std::size_t i = 0; i < n; ++i) {
                 const std::span<double> columns = row(begin + i);
                 for (std::size_t b = 0; b < E.size(); ++b)
@@ -225,10 +226,9 @@ class Gatherer {
                 if (!(hits.front >> i & 1u)) continue;
                 const auto place = Surfaces::place(hits.primitive[i], hits.u[i], hits.v[i]);
                 surfaces_.irradiance(place, H);
-                const Material& material = s_.materials[surfaces_.part(place.triangle).material];
-                const std::size_t bands = s_.bands.size();
-                for (std::size_t c = 0; c < sum.size(); ++c)
-                    sum[c] += material.reflectance[c % bands] * H[c];
+                Surfaces::PatternHere room;
+                const auto rho = surfaces_.reflectance(place, room);
+                for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += rho[c % rho.size()] * H[c];
             }
         }
         const std::span<double> columns = row(point);

@@ -53,6 +53,7 @@ struct Emitter {
     std::array<Vec3, 4> corners;
     std::uint32_t corner_count = 0;
     std::uint32_t part = 0;  ///< its material and group
+    Spectrum exitance{};     ///< mean of a patterned material here; empty = its material's
 };
 
 /// A luminaire of the input and the light group that it shines in.
@@ -70,7 +71,9 @@ struct Solution {
 
     std::vector<Vec3f> positions;  ///< per vertex [m]
     std::vector<Vec3f> normals;    ///< per vertex, unit
-    VertexField irradiance;        ///< rows: vertices; columns: groups × bands [irradiance_unit]
+    /// Per vertex; empty if no material is patterned.
+    std::vector<TextureCoordinates> texture_coordinates{};
+    VertexField irradiance;  ///< rows: vertices; columns: groups × bands [irradiance_unit]
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from the lit side
     std::vector<SolutionPart> parts;                      ///< cover `triangles` in order
     std::vector<Material> materials;
@@ -88,7 +91,8 @@ struct Solution {
 
     std::size_t columns() const { return groups.size() * bands.size(); }
 
-    /// Exitance B = E + ρ H in one column of vertex `vertex` seen as part of `part`.
+    /// Exitance B = E + ρ H, of a pattern's means, in one column of vertex `vertex` seen as part of
+    /// `part`.
     float exitance(std::size_t vertex, const SolutionPart& part, std::size_t column) const;
     /// The same for all columns, into `out` [columns()].
     void exitance(std::size_t vertex, const SolutionPart& part, std::span<float> out) const;

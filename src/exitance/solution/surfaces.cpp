@@ -59,4 +59,31 @@ void Surfaces::irradiance(const SurfacePlace& place, std::span<double> columns) 
                      place.weights[2] * double(Hc[i]);
 }
 
+std::span<const double> Surfaces::evaluate(const Pattern& pattern, const Spectrum& even,
+                                           TexturePoint TextureCoordinates::*which,
+                                           const SurfacePlace& place, PatternHere& room) const {
+    if (!pattern || solution_->texture_coordinates.empty()) return even;
+    double u = 0, v = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const TexturePoint& corner =
+            solution_->texture_coordinates[solution_->triangles[place.triangle][i]].*which;
+        u += place.weights[i] * double(corner.u), v += place.weights[i] * double(corner.v);
+    }
+    const Vec3 value = pattern.at({static_cast<float>(u), static_cast<float>(v)});
+    room = {value.x, value.y, value.z};
+    return room;
+}
+
+std::span<const double> Surfaces::reflectance(const SurfacePlace& place, PatternHere& room) const {
+    const Material& material = solution_->materials[part(place.triangle).material];
+    return evaluate(material.reflectance_pattern, material.reflectance,
+                    &TextureCoordinates::reflectance, place, room);
+}
+
+std::span<const double> Surfaces::emission(const SurfacePlace& place, PatternHere& room) const {
+    const Material& material = solution_->materials[part(place.triangle).material];
+    return evaluate(material.exitance_pattern, material.exitance, &TextureCoordinates::exitance,
+                    place, room);
+}
+
 }  // namespace exitance

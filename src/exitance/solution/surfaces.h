@@ -45,7 +45,18 @@ class Surfaces {
     /// Irradiance at a place, interpolated between the corners, per column [irradiance_unit].
     void irradiance(const SurfacePlace& place, std::span<double> columns) const;
 
+    /// Values of a pattern at one place: R, G, B.
+    using PatternHere = std::array<double, 3>;
+    /// Diffuse reflectance per band at a place, in full resolution; `room` may hold it.
+    std::span<const double> reflectance(const SurfacePlace& place, PatternHere& room) const;
+    /// Emitted exitance per band, the same way [exitance_unit].
+    std::span<const double> emission(const SurfacePlace& place, PatternHere& room) const;
+
   private:
+    std::span<const double> evaluate(const Pattern& pattern, const Spectrum& even,
+                                     TexturePoint TextureCoordinates::*which,
+                                     const SurfacePlace& place, PatternHere& room) const;
+
     const Solution* solution_;
     std::vector<std::uint32_t> part_of_triangle_;
     double diagonal_;

@@ -127,10 +127,9 @@ LightSource emission_of(const Radiosity& radiosity, FaceId id) {
 }
 
 LightSource unshot_of(const Radiosity& radiosity, PatchId patch, std::span<const float> ambient) {
-    const auto rho = radiosity.rho(radiosity.mesh[radiosity.mesh[patch].face]);
     return collect(radiosity, patch, [&](ElementId id, std::span<float> row) {
         radiosity.reflected_exitance(id, row);
-        const auto shot = radiosity.shot[id];
+        const auto rho = radiosity.rho(id), shot = radiosity.shot[id];
         for (std::size_t c = 0; c < row.size(); ++c) row[c] += rho[c] * ambient[c] - shot[c];
     });
 }

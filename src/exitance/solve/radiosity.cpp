@@ -5,6 +5,7 @@
 
 #include "exitance/math/polygon.h"
 #include "exitance/run/parallel.h"
+#include "exitance/scene/texture_map.h"
 #include "exitance/visibility/exposure.h"
 
 namespace exitance {
@@ -55,7 +56,8 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
       luminaires(scene.luminaires.begin(), scene.luminaires.end()),
       mesh(scene, mesh_options),
       irradiance(0, columns.count),
-      shot(0, columns.count) {
+      shot(0, columns.count),
+      rho_of_element_(0, columns.count) {
     rho_.assign(scene.materials.size() * columns.stride, 0.0f);
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         for (std::size_t c = 0; c < columns.count; ++c)
@@ -66,6 +68,9 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
         for (std::size_t b = 0; b < columns.bands; ++b)
             emitted_[s * columns.stride + groups.group_of_surface[s] * columns.bands + b] =
                 static_cast<float>(scene.materials[scene.surfaces[s].material].exitance[b]);
+    find_emission_of_textured_polygons();
+    for (const Material& material : scene.materials)
+        any_textured_ = any_textured_ || material.reflectance_pattern;
     emitted_by_luminaire_.assign(luminaires.size() * columns.stride, 0.0f);
     for (std::size_t l = 0; l < luminaires.size(); ++l) {
         for (std::size_t b = 0; b < columns.bands; ++b)
@@ -90,12 +95,61 @@ std::span<const float> Radiosity::rho(const Face& face) const {
     return {&rho_[scene.surfaces[face.surface].material * columns.stride], columns.stride};
 }
 
-std::span<const float> Radiosity::rho(VertexId vertex) const {
-    return rho(mesh[mesh[vertex].face]);
+std::span<const float> Radiosity::rho(ElementId element) const {
+    const Face& face = mesh.face_of(mesh[element]);
+    return textured(face) ? rho_of_element_[element] : rho(face);
 }
 
 std::span<const float> Radiosity::emitted(const Face& face) const {
-    return {&emitted_[face.surface * columns.stride], columns.stride};
+    std::uint32_t row = face.surface;
+    if (!emitted_of_polygon_.empty()) row = emitted_of_polygon_[face.polygon.index()];
+    return {&emitted_[row * columns.stride], columns.stride};
+}
+
+bool Radiosity::textured(const Face& face) const {
+    return any_textured_ &&
+           scene.materials[scene.surfaces[face.surface].material].reflectance_pattern;
+}
+
+void Radiosity::find_emission_of_textured_polygons() {
+    bool any = false;
+    for (const Material& material : scene.materials) any = any || material.exitance_pattern;
+    if (!any) return;
+    for (const Polygon& polygon : scene.polygons) {
+        emitted_of_polygon_.push_back(polygon.surface);
+        if (!scene.material(polygon).exitance_pattern) continue;
+        const Spectrum mean = mean_exitance(scene, polygon);
+        const std::size_t group = groups.group_of_surface[polygon.surface];
+        emitted_of_polygon_.back() = static_cast<std::uint32_t>(emitted_.size() / columns.stride);
+        emitted_.resize(emitted_.size() + columns.stride, 0.0f);
+        for (std::size_t b = 0; b < columns.bands; ++b)
+            emitted_[emitted_.size() - columns.stride + group * columns.bands + b] =
+                static_cast<float>(mean[b]);
+    }
+}
+
+// An element's outline lies on the texture as its polygon does.
+void Radiosity::find_rho_of_new_elements() {
+    if (!any_textured_) return;
+    const std::size_t first = textured_elements_, count = mesh.elements().size();
+    textured_elements_ = count;
+    rho_of_element_.resize_rows(count);
+    parallel_for(count - first, [&](std::size_t i) {
+        const ElementId id(first + i);
+        const Element& element = mesh[id];
+        const Face& face = mesh.face_of(element);
+        if (!textured(face)) return;
+        const Polygon& polygon = scene.polygons[face.polygon.index()];
+        const TextureMap map = reflectance_map(scene, polygon);
+        const auto corners = mesh.corners(element);
+        std::array<TexturePoint, 4> outline;
+        for (std::uint32_t c = 0; c < element.count; ++c) outline[c] = map(corners[c]);
+        const Vec3 mean =
+            scene.material(polygon).reflectance_pattern.mean({outline.data(), element.count});
+        const auto row = rho_of_element_[id];
+        for (std::size_t c = 0; c < columns.count; ++c)
+            row[c] = static_cast<float>(mean[c % columns.bands]);
+    });
 }
 
 std::span<const float> Radiosity::emitted_by_luminaire(std::size_t luminaire) const {
@@ -103,7 +157,9 @@ std::span<const float> Radiosity::emitted_by_luminaire(std::size_t luminaire) co
 }
 
 bool Radiosity::emits(const Face& face) const {
-    return scene.materials[scene.surfaces[face.surface].material].emits();
+    if (!scene.materials[scene.surfaces[face.surface].material].emits()) return false;
+    if (emitted_of_polygon_.empty()) return true;
+    return columns.magnitude(emitted(face)) > 0;
 }
 
 bool Radiosity::reflects(const Face& face) const {
@@ -132,6 +188,7 @@ void Radiosity::admit_new_vertices() {
     seen.resize(count, 1.0f);
     variance.resize(count, 0.0f);
     shot.resize_rows(mesh.elements().size());
+    find_rho_of_new_elements();
 }
 
 void Radiosity::receive(VertexId vertex, std::span<const float> row) {
@@ -184,7 +241,7 @@ void Radiosity::mean_irradiance(ElementId leaf, std::span<float> out) const {
 
 void Radiosity::reflected_exitance(ElementId leaf, std::span<float> out) const {
     mean_irradiance(leaf, out);
-    const auto reflectance = rho(mesh.face_of(mesh[leaf]));
+    const auto reflectance = rho(leaf);
     for (std::size_t c = 0; c < columns.stride; ++c) out[c] *= reflectance[c];
 }
 
@@ -197,7 +254,7 @@ Source Radiosity::source(const Face& face, const std::array<Vec3, 4>& corners) c
 std::size_t Radiosity::bytes() const {
     return mesh.bytes() + receivers.bytes() + exposed.capacity() + irradiance.bytes() +
            (seen.capacity() + variance.capacity()) * sizeof(float) + sends.capacity() +
-           shot.bytes();
+           shot.bytes() + rho_of_element_.bytes();
 }
 
 }  // namespace exitance

@@ -54,10 +54,14 @@ class Radiosity {
     ElementField shot;            ///< per leaf: reflected exitance already shot
     bool emission_shot = false;
 
-    /// Reflectance per column of the face's material, and its emitted exitance.
+    /// Reflectance per column of the face's material.
     std::span<const float> rho(const Face& face) const;
-    std::span<const float> rho(VertexId vertex) const;
+    /// Reflectance per column of an element: of a textured face, the mean over the element.
+    std::span<const float> rho(ElementId element) const;
+    /// Emitted exitance per column, the mean over the face's polygon.
     std::span<const float> emitted(const Face& face) const;
+    /// Whether reflectance varies over the face.
+    bool textured(const Face& face) const;
     /// What a luminaire emits per column, for an intensity of 1: its colour in its group.
     std::span<const float> emitted_by_luminaire(std::size_t luminaire) const;
     bool emits(const Face& face) const;
@@ -99,6 +103,14 @@ class Radiosity {
     std::vector<float> rho_;                   ///< material × stride
     std::vector<float> emitted_;               ///< surface × stride
     std::vector<float> emitted_by_luminaire_;  ///< luminaire × stride
+    /// Row of `emitted_` of polygons whose emission varies; their surface's row serves the others.
+    /// Empty if there are none.
+    std::vector<std::uint32_t> emitted_of_polygon_;
+    bool any_textured_ = false;
+    ElementField rho_of_element_;        ///< filled for textured faces; no rows if there are none
+    std::size_t textured_elements_ = 0;  ///< looked at for the above
+    void find_rho_of_new_elements();
+    void find_emission_of_textured_polygons();
     std::vector<char> two_sided_;
     double area_ = 0, emitted_flux_ = 0;
 };

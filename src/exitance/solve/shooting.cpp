@@ -84,8 +84,7 @@ Shooting::Brightest Shooting::brightest() const {
     std::vector<float> flux(columns.stride);
     Brightest best;
     for (std::size_t p = 0; p < mesh.patches().size(); ++p) {
-        const Patch& patch = mesh.patches()[p];
-        const auto rho = radiosity_.rho(mesh[patch.face]);
+        const auto rho = mean_rho(p);
         const float area = patch_open_[p];
         for (std::size_t c = 0; c < columns.stride; ++c)
             flux[c] = patch_unshot_[p * columns.stride + c] + spread[c] * rho[c] * area;
@@ -193,6 +192,7 @@ void Shooting::weigh_patches() {
     patch_open_.assign(mesh.patches().size(), 0.0f);
     std::vector<Radiosity::Weight> mean;
     std::vector<std::pair<std::uint32_t, float>> sum;
+    weigh_textures();
     for (const Patch& patch : mesh.patches()) {
         sum.clear();
         mesh.for_leaves(patch.root, [&](ElementId id) {
@@ -217,7 +217,7 @@ void Shooting::weigh_patches() {
     std::fill(rho_area_.begin(), rho_area_.end(), 0.0);
     open_area_ = 0;
     for (std::size_t p = 0; p < mesh.patches().size(); ++p) {
-        const auto rho = radiosity_.rho(mesh[mesh.patches()[p].face]);
+        const auto rho = mean_rho(p);
         for (std::size_t c = 0; c < stride; ++c) rho_area_[c] += double(patch_open_[p] * rho[c]);
         open_area_ += static_cast<double>(patch_open_[p]);
         mesh.for_leaves(mesh.patches()[p].root, [&](ElementId id) {
@@ -225,6 +225,53 @@ void Shooting::weigh_patches() {
             const float open = radiosity_.open_share(mesh[id]) * mesh[id].area;
             for (std::size_t c = 0; c < stride; ++c) patch_shot_[p * stride + c] += open * shot[c];
         });
+    }
+}
+
+// Where reflectance varies over a patch, each element's part of a vertex's weight comes with the
+// element's own: ρ H of the patch is Σ weight · ρ · H still.
+void Shooting::weigh_textures() {
+    const Mesh& mesh = radiosity_.mesh;
+    const std::size_t stride = radiosity_.columns.stride;
+    textured_.clear();
+    std::vector<Radiosity::Weight> mean;
+    for (std::size_t p = 0; p < mesh.patches().size(); ++p) {
+        const Patch& patch = mesh.patches()[p];
+        if (!radiosity_.textured(mesh[patch.face])) continue;
+        textured_.resize(mesh.patches().size());
+        TexturedPatch& entry = textured_[p];
+        entry.mean_rho.assign(stride, 0.0f);
+        float all = 0;
+        mesh.for_leaves(patch.root, [&](ElementId id) {
+            const auto rho = radiosity_.rho(id);
+            const float open = radiosity_.open_share(mesh[id]) * mesh[id].area;
+            all += open;
+            for (std::size_t c = 0; c < stride; ++c) entry.mean_rho[c] += open * rho[c];
+            radiosity_.mean_weights(id, mean);
+            for (const Radiosity::Weight& w : mean)
+                entry.terms.push_back({w.vertex, id, open * w.share});
+        });
+        for (float& rho : entry.mean_rho) rho = all > 0 ? rho / all : 0.0f;
+    }
+}
+
+std::span<const float> Shooting::mean_rho(std::size_t patch) const {
+    if (!textured_.empty() && !textured_[patch].mean_rho.empty()) return textured_[patch].mean_rho;
+    return radiosity_.rho(radiosity_.mesh[radiosity_.mesh.patches()[patch].face]);
+}
+
+void Shooting::find_reflected(std::size_t patch, std::span<const float> received,
+                              std::span<float> out) const {
+    if (textured_.empty() || textured_[patch].mean_rho.empty()) {
+        const auto rho = mean_rho(patch);
+        for (std::size_t c = 0; c < out.size(); ++c) out[c] = rho[c] * received[c];
+        return;
+    }
+    std::fill(out.begin(), out.end(), 0.0f);
+    for (const TexturedPatch::Term& term : textured_[patch].terms) {
+        const auto rho = radiosity_.rho(term.element);
+        const auto H = radiosity_.irradiance[term.vertex];
+        for (std::size_t c = 0; c < out.size(); ++c) out[c] += term.area * rho[c] * H[c];
     }
 }
 
@@ -259,17 +306,17 @@ void Shooting::find_unshot() {
         mesh.patches().size(),
         [&](std::size_t begin, std::size_t end) {
             FluxSums block{std::vector<double>(stride, 0.0), std::vector<double>(stride, 0.0)};
-            std::vector<float> received(stride);
+            std::vector<float> received(stride), reflected(stride);
             for (std::size_t p = begin; p < end; ++p) {
                 std::fill(received.begin(), received.end(), 0.0f);
                 for (std::uint32_t k = weight_begin_[p]; k < weight_begin_[p + 1]; ++k) {
                     const auto H = radiosity_.irradiance[VertexId(weight_vertex_[k])];
                     for (std::size_t c = 0; c < stride; ++c) received[c] += weight_[k] * H[c];
                 }
-                const auto rho = radiosity_.rho(mesh[mesh.patches()[p].face]);
                 const std::span<float> unshot{&patch_unshot_[p * stride], stride};
+                find_reflected(p, received, reflected);
                 for (std::size_t c = 0; c < stride; ++c) {
-                    unshot[c] = rho[c] * received[c] - patch_shot_[p * stride + c];
+                    unshot[c] = reflected[c] - patch_shot_[p * stride + c];
                     block.received[c] += static_cast<double>(received[c]);
                     block.unshot[c] += static_cast<double>(unshot[c]);
                 }

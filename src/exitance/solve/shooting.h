@@ -64,6 +64,12 @@ class Shooting final : public Solver {
     /// The patch whose shot moves most light.
     Brightest brightest() const;
     void weigh_patches();
+    void weigh_textures();
+    /// Reflectance per column of a patch, the mean over what is not covered.
+    std::span<const float> mean_rho(std::size_t patch) const;
+    /// Flux that a patch reflects of what it has `received`.
+    void find_reflected(std::size_t patch, std::span<const float> received,
+                        std::span<float> out) const;
     void find_unshot();
     float tolerance() const;
 
@@ -76,12 +82,23 @@ class Shooting final : public Solver {
     std::vector<std::uint32_t> weight_begin_, weight_vertex_;
     std::vector<float> weight_;
     std::size_t weighed_elements_ = 0;
-    std::vector<float> patch_open_;      ///< area of each that receives and sends
-    std::vector<float> patch_shot_;      ///< reflected flux already shot: patches × columns
-    std::vector<float> patch_unshot_;    ///< the rest of the reflected flux, signed
-    double unshot_flux_ = 0;             ///< Σ of its magnitudes
-    std::vector<double> unshot_column_;  ///< Σ over the patches, signed
-    std::vector<double> rho_area_;       ///< Σ A ρ per column, over the open area
+    /// Of a patch whose reflectance varies: its weights, element by element.
+    struct TexturedPatch {
+        struct Term {
+            VertexId vertex;
+            ElementId element;
+            float area;
+        };
+        std::vector<Term> terms{};
+        std::vector<float> mean_rho{};  ///< per column; empty for other patches
+    };
+    std::vector<TexturedPatch> textured_;  ///< patches, or empty if there are none
+    std::vector<float> patch_open_;        ///< area of each that receives and sends
+    std::vector<float> patch_shot_;        ///< reflected flux already shot: patches × columns
+    std::vector<float> patch_unshot_;      ///< the rest of the reflected flux, signed
+    double unshot_flux_ = 0;               ///< Σ of its magnitudes
+    std::vector<double> unshot_column_;    ///< Σ over the patches, signed
+    std::vector<double> rho_area_;         ///< Σ A ρ per column, over the open area
     double open_area_ = 0;
     double lit_share_ = 1;        ///< of the open area that light is spread over
     double mean_irradiance_ = 0;  ///< luminance

@@ -5,21 +5,23 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <unordered_map>
 
 #include "exitance/math/transform.h"
 #include "exitance/scene/formats/gltf_document.h"
+#include "exitance/scene/formats/gltf_lights.h"
+#include "exitance/scene/formats/gltf_materials.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/source_text.h"
+#include "exitance/scene/texture_map.h"
 
 namespace exitance {
 
 namespace {
-
-// Reflectance of what the file gives no material, and of the textures that are not read.
-constexpr double unknown_reflectance = 0.5;
 
 Vec3 vector_of(const std::vector<double>& v, std::size_t first = 0) {
     return {v[first], v[first + 1], v[first + 2]};
@@ -54,8 +56,13 @@ Transform local_transform(const tinygltf::Node& node) {
 class GltfReader {
   public:
     GltfReader(const std::filesystem::path& path, const tinygltf::Model& model,
-               const JsonText& json)
-        : model_(model), json_(json) {
+               const JsonText& json, const ReadOptions& options)
+        : model_(model),
+          json_(json),
+          options_(options),
+          resources_(path, model, json, options.most_bytes()),
+          textures_(resources_, json, options, warner()),
+          lights_(scene_, resources_, json, warner()) {
         scene_.title = path.stem().string();
     }
 
@@ -63,8 +70,10 @@ class GltfReader {
         for (std::size_t i = 0; i < model_.materials.size(); ++i) read_material(i);
         walk();
         summarise();
+        average_patterns();
         for (const Material& material : scene_.materials)
             if (material.emits()) scene_.quantity = Quantity::photometric;
+        if (!scene_.luminaires.empty()) scene_.quantity = Quantity::photometric;
         return std::move(scene_);
     }
 
@@ -76,42 +85,16 @@ class GltfReader {
         scene_.warnings.push_back(std::move(problem));
     }
 
+    GltfTextures::Warn warner() {
+        return [this](const std::string& path, const std::string& what) { warn(path, what); };
+    }
+
     void read_material(std::size_t index) {
-        const tinygltf::Material& from = model_.materials[index];
-        const std::string path = fmt::format("materials[{}]", index);
-        Material to;
-        to.name = from.name.empty() ? fmt::format("material {}", index) : from.name;
-        to.place = json_.place(path);
-        to.two_sided = from.doubleSided;
-        const auto& base = from.pbrMetallicRoughness;
-        to.reflectance = {base.baseColorFactor[0], base.baseColorFactor[1],
-                          base.baseColorFactor[2]};
-        if (base.baseColorTexture.index >= 0) {
-            for (double& rho : to.reflectance) rho *= unknown_reflectance;
-            warn(path, fmt::format("the texture of '{}' is not read; its reflectance is taken as "
-                                   "{} of its base colour factor",
-                                   to.name, unknown_reflectance));
-        }
-        // Luminance L in every direction of the hemisphere: exitance M = π L (Lambert).
-        double strength = 1;
-        const auto extension = from.extensions.find("KHR_materials_emissive_strength");
-        if (extension != from.extensions.end() && extension->second.Has("emissiveStrength"))
-            strength = extension->second.Get("emissiveStrength").GetNumberAsDouble();
-        to.exitance.assign(3, 0.0);
-        if (from.emissiveFactor.size() == 3)
-            for (std::size_t b = 0; b < 3; ++b) {
-                to.exitance[b] = std::numbers::pi * strength * from.emissiveFactor[b];
-                if (to.exitance[b] > limits::exitance)
-                    json_.refuse(path, fmt::format("found the exitance {:g}, expected at most {:g}",
-                                                   to.exitance[b], limits::exitance));
-            }
-        if (to.emits() && from.emissiveTexture.index >= 0)
-            warn(path,
-                 fmt::format("the emissive texture of '{}' is not read; it emits evenly", to.name));
-        if (from.alphaMode == "BLEND" || from.extensions.count("KHR_materials_transmission") > 0)
-            warn(path,
-                 fmt::format("'{}' lets light through in the file; here it does not", to.name));
-        scene_.add_material(std::move(to));
+        GltfMaterial read =
+            read_gltf_material(model_.materials[index], index, textures_, json_, warner());
+        scene_.add_material(std::move(read.material));
+        read.material = {};
+        uses_.push_back(std::move(read));
     }
 
     // What is given no material, made when first needed.
@@ -162,11 +145,12 @@ class GltfReader {
             seen[i] = true;
             const tinygltf::Node& node = model_.nodes[i];
             const Transform world = visit.parent.after(local_transform(node));
-            if (node.mesh >= 0) read_mesh(node, i, world);
+            if (node.mesh >= 0)
+                for (const Transform& instance : instances(node, i, world))
+                    read_mesh(node, i, instance);
+            lights_.add(i, node.name.empty() ? fmt::format("light {}", i) : node.name, world);
             if (node.camera >= 0) read_camera(node, world);
             if (node.skin >= 0) ++skinned_;
-            if (node.extensions.count("KHR_lights_punctual") > 0) ++lights_;
-            if (node.extensions.count("EXT_mesh_gpu_instancing") > 0) ++instanced_;
             for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
                 open.push_back({*child, world});
         }
@@ -183,14 +167,178 @@ class GltfReader {
                            world);
     }
 
+    // EXT_mesh_gpu_instancing: a copy at each translation, rotation and scale, in the node's frame.
+    std::vector<Transform> instances(const tinygltf::Node& node, std::size_t node_index,
+                                     const Transform& world) const {
+        const auto extension = node.extensions.find("EXT_mesh_gpu_instancing");
+        if (extension == node.extensions.end()) return {world};
+        const std::string path =
+            fmt::format("nodes[{}].extensions.EXT_mesh_gpu_instancing", node_index);
+        const tinygltf::Value& attributes = extension->second.Get("attributes");
+        std::optional<std::size_t> count;
+        const auto find = [&](const char* name, int type) {
+            std::optional<GltfAccessor> out;
+            if (!attributes.Has(name)) return out;
+            out.emplace(model_, attributes.Get(name).GetNumberAsInt(), json_);
+            if (out->type() != type || (count && *count != out->count()))
+                json_.refuse(path + ".attributes." + name,
+                             "expected an accessor of the type and count of the extension");
+            count = out->count();
+            return out;
+        };
+        const auto moves = find("TRANSLATION", TINYGLTF_TYPE_VEC3);
+        const auto turns = find("ROTATION", TINYGLTF_TYPE_VEC4);
+        const auto scales = find("SCALE", TINYGLTF_TYPE_VEC3);
+        if (count.value_or(1) > options_.max_polygons)
+            json_.refuse(path, fmt::format("found {} instances, expected no more than the limit "
+                                           "of polygons, {}; --max-polygons raises the limit",
+                                           *count, options_.max_polygons));
+        std::vector<Transform> out;
+        for (std::size_t i = 0; i < count.value_or(1); ++i) {
+            tinygltf::Node local;
+            const auto list = [](const Vec3& v) { return std::vector<double>{v.x, v.y, v.z}; };
+            if (moves) local.translation = list(moves->vec3(i));
+            if (scales) local.scale = list(scales->vec3(i));
+            if (turns) {
+                local.rotation = list(turns->vec3(i));
+                local.rotation.push_back(turns->component(i, 3));
+                double squared = 0;
+                for (const double q : local.rotation) squared += q * q;
+                if (!(squared > 0.25 && squared < 4))
+                    json_.refuse(path + ".attributes.ROTATION",
+                                 fmt::format("rotation {} is no quaternion of length 1", i));
+            }
+            out.push_back(world.after(local_transform(local)));
+        }
+        return out;
+    }
+
     std::optional<GltfAccessor> attribute(const tinygltf::Primitive& primitive, const char* name,
-                                          const std::string& path) const {
+                                          const std::string& path,
+                                          std::initializer_list<int> types = {TINYGLTF_TYPE_VEC3},
+                                          std::optional<std::size_t> count = {}) const {
         const auto found = primitive.attributes.find(name);
         if (found == primitive.attributes.end()) return std::nullopt;
         const GltfAccessor accessor(model_, found->second, json_);
-        if (accessor.type() != TINYGLTF_TYPE_VEC3)
-            json_.refuse(path + ".attributes." + name, "expected an accessor of type VEC3");
+        if (std::find(types.begin(), types.end(), accessor.type()) == types.end())
+            json_.refuse(path + ".attributes." + name, types.size() > 1 ? "expected a VEC3 or VEC4"
+                                                       : *types.begin() == TINYGLTF_TYPE_VEC2
+                                                           ? "expected an accessor of type VEC2"
+                                                           : "expected an accessor of type VEC3");
+        if (count && accessor.count() != *count)
+            json_.refuse(path + ".attributes",
+                         fmt::format("found {} positions and {} of {}, expected as many", *count,
+                                     accessor.count(), name));
         return accessor;
+    }
+
+    std::optional<GltfAccessor> indices_of(const tinygltf::Primitive& primitive,
+                                           const std::string& path) const {
+        std::optional<GltfAccessor> indices;
+        if (primitive.indices < 0) return indices;
+        indices.emplace(model_, primitive.indices, json_);
+        const int type = indices->component_type();
+        if (indices->type() != TINYGLTF_TYPE_SCALAR ||
+            (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
+             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
+             type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
+            json_.refuse(path + ".indices", "expected an accessor of unsigned integer scalars");
+        return indices;
+    }
+
+    /// Where the patterns of a primitive's material lie at its vertices.
+    struct Coordinates {
+        const GltfTextureUse *reflectance = nullptr, *exitance = nullptr;
+        std::array<std::optional<GltfAccessor>, 2> sets{};
+
+        explicit operator bool() const { return reflectance || exitance; }
+        TexturePoint of(const GltfTextureUse* use, std::size_t vertex) const {
+            if (!use) return {};
+            const auto& set = sets[static_cast<std::size_t>(use->set)];
+            return set ? (*use)(set->component(vertex, 0), set->component(vertex, 1))
+                       : (*use)(0, 0);
+        }
+        TextureCoordinates operator()(std::size_t vertex) const {
+            return {of(reflectance, vertex), of(exitance, vertex)};
+        }
+    };
+
+    Coordinates coordinates_of(const tinygltf::Primitive& primitive, const std::string& path,
+                               std::size_t count) {
+        Coordinates out;
+        if (primitive.material < 0) return out;
+        const GltfMaterial& use = uses_[static_cast<std::size_t>(primitive.material)];
+        if (use.reflectance.texture) out.reflectance = &use.reflectance;
+        if (use.exitance.texture) out.exitance = &use.exitance;
+        for (const GltfTextureUse* one : {out.reflectance, out.exitance}) {
+            if (!one) continue;
+            const std::string name = fmt::format("TEXCOORD_{}", one->set);
+            auto& set = out.sets[static_cast<std::size_t>(one->set)];
+            set = attribute(primitive, name.c_str(), path, {TINYGLTF_TYPE_VEC2}, count);
+            if (!set) warn(path, fmt::format("{} is missing for its texture", name));
+        }
+        return out;
+    }
+
+    // COLOR_0 multiplies the base colour: here as its mean over the surface.
+    void tint(std::uint32_t surface, std::size_t first_polygon, const GltfAccessor& colours,
+              const std::vector<std::uint32_t>& vertex_of_point, std::uint32_t first_point) {
+        Vec3 sum;
+        double area = 0;
+        for (std::size_t p = first_polygon; p < scene_.polygons.size(); ++p) {
+            const Polygon& polygon = scene_.polygons[p];
+            const double weight = scene_.area(polygon) / 3;
+            if (!std::isfinite(weight)) continue;
+            area += 3 * weight;
+            for (const std::uint32_t i : polygon.indices())
+                sum += colours.vec3(vertex_of_point[i - first_point]) * weight;
+        }
+        if (!(area > 0)) return;
+        std::array<int, 3> percent{};
+        for (std::size_t b = 0; b < 3; ++b)
+            percent[b] = static_cast<int>(std::lround(std::clamp(sum[b] / area, 0.0, 1.0) * 1e4));
+        if (percent == std::array<int, 3>{10000, 10000, 10000}) return;
+        std::uint32_t& material = scene_.surfaces[surface].material;
+        const auto [entry, fresh] = tinted_.try_emplace({material, percent}, 0u);
+        if (fresh) {
+            Material made = scene_.materials[material];
+            for (std::size_t b = 0; b < 3; ++b) {
+                made.reflectance[b] *= percent[b] / 1e4;
+                if (made.reflectance_pattern)
+                    made.reflectance_pattern.factor[b] *= percent[b] / 1e4;
+                if (!made.transmittance.empty()) made.transmittance[b] *= percent[b] / 1e4;
+            }
+            entry->second = scene_.add_material(std::move(made));
+        }
+        material = entry->second;
+    }
+
+    // A patterned material's reflectance and exitance become their means over all that it covers.
+    void average_patterns() {
+        struct Mean {
+            double area = 0;
+            Spectrum reflectance{0, 0, 0}, exitance{0, 0, 0};
+        };
+        std::map<std::uint32_t, Mean> means;
+        for (const Polygon& polygon : scene_.polygons) {
+            const std::uint32_t m = scene_.surfaces[polygon.surface].material;
+            if (!scene_.materials[m].patterned()) continue;
+            const double area = scene_.area(polygon);
+            if (!(area > 0 && std::isfinite(area))) continue;
+            Mean& mean = means[m];
+            mean.area += area;
+            const Spectrum rho = mean_reflectance(scene_, polygon),
+                           emitted = mean_exitance(scene_, polygon);
+            for (std::size_t b = 0; b < 3; ++b) {
+                mean.reflectance[b] += area * rho[b];
+                mean.exitance[b] += area * emitted[b];
+            }
+        }
+        for (const auto& [m, mean] : means)
+            for (std::size_t b = 0; b < 3; ++b) {
+                scene_.materials[m].reflectance[b] = mean.reflectance[b] / mean.area;
+                scene_.materials[m].exitance[b] = mean.exitance[b] / mean.area;
+            }
     }
 
     void read_primitive(const tinygltf::Primitive& primitive, const std::string& path,
@@ -201,21 +349,13 @@ class GltfReader {
         }
         const auto positions = attribute(primitive, "POSITION", path);
         if (!positions) json_.refuse(path + ".attributes", "'POSITION' is missing");
-        const auto normals = attribute(primitive, "NORMAL", path);
-        if (normals && normals->count() != positions->count())
-            json_.refuse(path + ".attributes",
-                         fmt::format("found {} positions and {} normals, expected as many",
-                                     positions->count(), normals->count()));
-        std::optional<GltfAccessor> indices;
-        if (primitive.indices >= 0) {
-            indices.emplace(model_, primitive.indices, json_);
-            const int type = indices->component_type();
-            if (indices->type() != TINYGLTF_TYPE_SCALAR ||
-                (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
-                 type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
-                 type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
-                json_.refuse(path + ".indices", "expected an accessor of unsigned integer scalars");
-        }
+        const auto normals =
+            attribute(primitive, "NORMAL", path, {TINYGLTF_TYPE_VEC3}, positions->count());
+        const auto colours =
+            attribute(primitive, "COLOR_0", path, {TINYGLTF_TYPE_VEC3, TINYGLTF_TYPE_VEC4},
+                      positions->count());
+        const Coordinates coordinates = coordinates_of(primitive, path, positions->count());
+        const auto indices = indices_of(primitive, path);
         if (!primitive.targets.empty()) ++morphed_;
 
         const std::uint32_t surface = scene_.add_surface(
@@ -225,6 +365,9 @@ class GltfReader {
 
         // Vertices are taken over as triangles name them: primitives may share one large accessor.
         std::unordered_map<std::uint32_t, std::uint32_t> taken;
+        const auto first_point = static_cast<std::uint32_t>(scene_.points.size());
+        const std::size_t first_polygon = scene_.polygons.size();
+        std::vector<std::uint32_t> vertex_of_point;
         const auto vertex = [&](std::size_t corner) {
             const std::uint32_t i =
                 indices ? indices->index(corner) : static_cast<std::uint32_t>(corner);
@@ -239,6 +382,8 @@ class GltfReader {
                 if (normals) normal = normalized(world.normal(normals->vec3(i)));
                 if (!is_finite(normal)) normal = {};
                 entry->second = scene_.add_point(world.point(positions->vec3(i)), normal);
+                if (coordinates) scene_.set_texture_coordinates(entry->second, coordinates(i));
+                if (colours) vertex_of_point.push_back(i);
             }
             return entry->second;
         };
@@ -248,9 +393,10 @@ class GltfReader {
                          fmt::format("found {} corners, expected a multiple of three", corners));
         const bool list = primitive.mode == TINYGLTF_MODE_TRIANGLES;
         const std::size_t triangles = list ? corners / 3 : corners < 3 ? 0 : corners - 2;
-        if (scene_.polygons.size() + triangles > limits::elements)
-            json_.refuse(path,
-                         fmt::format("the scene has more than {} polygons", limits::elements));
+        if (scene_.polygons.size() + triangles > options_.max_polygons)
+            json_.refuse(path, fmt::format("the scene has more than {} polygons; --max-polygons "
+                                           "raises the limit",
+                                           options_.max_polygons));
         const bool mirrored = world.determinant() < 0;
         for (std::size_t t = 0; t < triangles; ++t) {
             std::array<std::size_t, 3> of{3 * t, 3 * t + 1, 3 * t + 2};
@@ -269,6 +415,7 @@ class GltfReader {
                               polygon.corners[2] == polygon.corners[0];
             if (list || !jump) scene_.polygons.push_back(polygon);
         }
+        if (colours) tint(surface, first_polygon, *colours, vertex_of_point, first_point);
     }
 
     // A camera looks along −z of its node, y up (glTF 2.0, section 3.10.2).
@@ -301,17 +448,20 @@ class GltfReader {
         tell(no_triangles_, "primitives of points or lines are left out");
         tell(skinned_, "skinned nodes are read in the pose of their mesh");
         tell(morphed_, "primitives with morph targets are read in their base shape");
-        tell(lights_, "lights of KHR_lights_punctual are not read");
-        tell(instanced_, "nodes with EXT_mesh_gpu_instancing are read once, not instanced");
         tell(other_cameras_, "cameras without a perspective are left out");
     }
 
     const tinygltf::Model& model_;
     const JsonText& json_;
+    const ReadOptions& options_;
     Scene scene_;
+    GltfResources resources_;
+    GltfTextures textures_;
+    GltfLights lights_;
     std::optional<std::uint32_t> no_material_;
-    std::size_t no_triangles_ = 0, skinned_ = 0, morphed_ = 0, lights_ = 0, instanced_ = 0,
-                other_cameras_ = 0;
+    std::vector<GltfMaterial> uses_;  ///< where the patterns of the file's materials lie
+    std::map<std::pair<std::uint32_t, std::array<int, 3>>, std::uint32_t> tinted_;
+    std::size_t no_triangles_ = 0, skinned_ = 0, morphed_ = 0, other_cameras_ = 0;
 };
 
 }  // namespace
@@ -322,16 +472,17 @@ bool looks_like_gltf(std::string_view bytes) {
     return first != std::string_view::npos && bytes[first] == '{';
 }
 
-Scene parse_gltf(const std::filesystem::path& path, std::string_view bytes) {
+Scene parse_gltf(const std::filesystem::path& path, std::string_view bytes,
+                 const ReadOptions& options) {
     const GltfParts parts = split_gltf(path.string(), bytes);
     const JsonText json(path.string(), parts.json, !parts.is_binary);
     check_gltf(json);
     const tinygltf::Model model = load_gltf(path, parts, json);
-    return GltfReader(path, model, json).read();
+    return GltfReader(path, model, json, options).read();
 }
 
-Scene read_gltf(const std::filesystem::path& path) {
-    return parse_gltf(path, read_whole_file(path));
+Scene read_gltf(const std::filesystem::path& path, const ReadOptions& options) {
+    return parse_gltf(path, read_whole_file(path, options.most_bytes()), options);
 }
 
 }  // namespace exitance

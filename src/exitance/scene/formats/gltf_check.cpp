@@ -19,15 +19,19 @@ constexpr double huge = std::numeric_limits<double>::max();
 constexpr std::size_t longest = std::numeric_limits<std::int32_t>::max();
 
 // Extensions a file may require: they change nothing that is read here, or are read.
-const std::array<std::string, 9> supported_extensions{"KHR_materials_emissive_strength",
-                                                      "KHR_mesh_quantization",
-                                                      "KHR_materials_unlit",
-                                                      "KHR_texture_transform",
-                                                      "KHR_materials_specular",
-                                                      "KHR_materials_ior",
-                                                      "KHR_texture_basisu",
-                                                      "EXT_texture_webp",
-                                                      "EXT_texture_avif"};
+const std::array<std::string, 13> supported_extensions{"EXT_lights_ies",
+                                                       "EXT_mesh_gpu_instancing",
+                                                       "EXT_meshopt_compression",
+                                                       "KHR_draco_mesh_compression",
+                                                       "KHR_lights_punctual",
+                                                       "KHR_materials_emissive_strength",
+                                                       "KHR_materials_ior",
+                                                       "KHR_materials_specular",
+                                                       "KHR_materials_transmission",
+                                                       "KHR_materials_unlit",
+                                                       "KHR_materials_volume",
+                                                       "KHR_mesh_quantization",
+                                                       "KHR_texture_transform"};
 
 // Calls `check` for every entry of the root's array `name`; returns how many there are.
 std::size_t for_each(const JsonNode& root, const std::string& name,
@@ -94,6 +98,13 @@ void check_scenes_and_nodes(const JsonNode& root) {
     for_each(root, "nodes", [&](const JsonNode& node) {
         check_index(node, "mesh", root, "meshes");
         check_index(node, "camera", root, "cameras");
+        if (const JsonNode extensions = node.member("extensions"))
+            if (const JsonNode instances = extensions.member("EXT_mesh_gpu_instancing")) {
+                const JsonNode attributes = instances.required("attributes");
+                if (!attributes.value->is_object()) attributes.expected("an object");
+                for (const auto& [key, value] : attributes.value->items())
+                    check_index(attributes, key, root, "accessors");
+            }
         check_indices(node, "children", root, "nodes");
         const double most = limits::coordinate;
         if (const JsonNode matrix = node.member("matrix")) matrix.numbers(16, -most, most);
@@ -167,19 +178,84 @@ void check_accessors(const JsonNode& root) {
     });
 }
 
+// The extension `name` of an object; null if it has none.
+JsonNode extension(const JsonNode& object, const std::string& name) {
+    const JsonNode extensions = object.member("extensions");
+    return extensions ? extensions.member(name) : extensions;
+}
+
+void check_texture(const JsonNode& owner, const std::string& key, const JsonNode& root) {
+    const JsonNode info = owner.member(key);
+    if (!info) return;
+    check_index(info, "index", root, "textures", true);
+    whole(info, "texCoord", 0, 1000, false);
+    if (const JsonNode transform = extension(info, "KHR_texture_transform")) {
+        const double most = 1e6;
+        if (const JsonNode move = transform.member("offset")) move.numbers(2, -most, most);
+        if (const JsonNode scale = transform.member("scale")) scale.numbers(2, -most, most);
+        if (const JsonNode turn = transform.member("rotation"))
+            turn.number(-most, most, "an angle in radians");
+        whole(transform, "texCoord", 0, 1000, false);
+    }
+}
+
+void check_number(const JsonNode& object, const std::string& key, double least, double most,
+                  const std::string& what) {
+    if (const JsonNode value = object.member(key)) value.number(least, most, what);
+}
+
 void check_materials(const JsonNode& root) {
-    for_each(root, "materials", [](const JsonNode& material) {
-        if (const JsonNode pbr = material.member("pbrMetallicRoughness"))
+    for_each(root, "materials", [&](const JsonNode& material) {
+        if (const JsonNode pbr = material.member("pbrMetallicRoughness")) {
             if (const JsonNode colour = pbr.member("baseColorFactor")) colour.numbers(4, 0, 1);
+            check_texture(pbr, "baseColorTexture", root);
+        }
+        check_texture(material, "emissiveTexture", root);
         if (const JsonNode emissive = material.member("emissiveFactor"))
             emissive.numbers(3, 0, limits::exitance);
         if (const JsonNode both = material.member("doubleSided")) both.boolean();
         if (const JsonNode alpha = material.member("alphaMode")) alpha.string();
-        if (const JsonNode extensions = material.member("extensions"))
-            if (const JsonNode strong = extensions.member("KHR_materials_emissive_strength"))
-                if (const JsonNode strength = strong.member("emissiveStrength"))
-                    strength.number(0, limits::exitance, "a strength, 0 or more");
+        if (const JsonNode strong = extension(material, "KHR_materials_emissive_strength"))
+            check_number(strong, "emissiveStrength", 0, limits::exitance, "a strength, 0 or more");
+        if (const JsonNode glass = extension(material, "KHR_materials_transmission"))
+            check_number(glass, "transmissionFactor", 0, 1, "a share, 0 to 1");
+        if (const JsonNode ior = extension(material, "KHR_materials_ior"))
+            check_number(ior, "ior", 0, 1e3, "an index of refraction, 0 or 1 and more");
+        if (const JsonNode gloss = extension(material, "KHR_materials_specular")) {
+            check_number(gloss, "specularFactor", 0, 1, "a share, 0 to 1");
+            if (const JsonNode colour = gloss.member("specularColorFactor"))
+                colour.numbers(3, 0, 1e3);
+        }
     });
+}
+
+// Lights and where they hang; `name` is the extension that declares them.
+void check_lights(const JsonNode& root, const std::string& name,
+                  const std::function<void(const JsonNode&)>& check) {
+    const JsonNode declared = extension(root, name);
+    std::size_t count = 0;
+    if (declared) count = for_each(declared, "lights", check);
+    for_each(root, "nodes", [&](const JsonNode& node) {
+        if (const JsonNode placed = extension(node, name)) {
+            placed.required("light").index(count, "lights");
+            check_number(placed, "multiplier", 0, limits::exitance, "a factor, 0 or more");
+            if (const JsonNode colour = placed.member("color"))
+                colour.numbers(3, 0, limits::exitance);
+        }
+    });
+}
+
+void check_all_lights(const JsonNode& root) {
+    check_lights(root, "KHR_lights_punctual", [](const JsonNode& light) {
+        light.required("type").string();
+        if (const JsonNode colour = light.member("color")) colour.numbers(3, 0, limits::exitance);
+        check_number(light, "intensity", 0, limits::exitance, "an intensity, 0 or more");
+        if (const JsonNode spot = light.member("spot")) {
+            check_number(spot, "innerConeAngle", 0, 1.5708, "an angle from 0 to π/2");
+            check_number(spot, "outerConeAngle", 0, 1.5708, "an angle from 0 to π/2");
+        }
+    });
+    check_lights(root, "EXT_lights_ies", [](const JsonNode&) {});
 }
 
 void check_cameras(const JsonNode& root) {
@@ -205,6 +281,7 @@ void check_gltf(const JsonText& json) {
     check_accessors(root);
     check_materials(root);
     check_cameras(root);
+    check_all_lights(root);
 }
 
 }  // namespace exitance

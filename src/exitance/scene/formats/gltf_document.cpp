@@ -5,9 +5,12 @@
 #include <tiny_gltf.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "exitance/scene/formats/gltf_compression.h"
+#include "exitance/scene/formats/gltf_resources.h"
 #include "exitance/scene/formats/source_text.h"
 
 namespace exitance {
@@ -50,12 +53,11 @@ std::string glb_of(const std::string& json, std::string_view binary) {
     return out;
 }
 
-// Buffers are looked up in the scene's own folder, not in the current one; only regular files are
-// opened, never a pipe or device.
+// Buffers are looked up in the scene's own folder, not in the current one and not outside; only
+// regular files are opened, never a pipe or device.
 bool is_file(const std::string& path, void* folder) {
-    std::error_code ignored;
-    return path.rfind(*static_cast<const std::string*>(folder), 0) == 0 &&
-           std::filesystem::is_regular_file(path, ignored);
+    const std::string& scene = *static_cast<const std::string*>(folder);
+    return path.rfind(scene, 0) == 0 && is_file_below(path, scene);
 }
 
 bool read_file(std::vector<unsigned char>* out, std::string* error, const std::string& path,
@@ -75,6 +77,9 @@ std::string first_line(const std::string& text) {
     if (line.size() > 200) line = as_utf8(line.substr(0, 200)) + "…";
     return line;
 }
+
+// Elements that a file need not hold bytes for; more are no room but an attack on memory.
+constexpr std::size_t most_zeros = 1'000'000;
 
 std::size_t component_size(int type) {
     switch (type) {
@@ -148,6 +153,29 @@ double load_component(const unsigned char* bytes, int type, bool normalised) {
     }
 }
 
+// Draco's triangles have no bytes of their own, which the loader would miss; decompress_gltf()
+// brings them back.
+void leave_out_draco_indices(nlohmann::json& gltf) {
+    if (!gltf.contains("meshes")) return;
+    for (nlohmann::json& mesh : gltf["meshes"])
+        for (nlohmann::json& primitive : mesh["primitives"])
+            if (primitive.contains("extensions") && primitive["extensions"].is_object() &&
+                primitive["extensions"].contains("KHR_draco_mesh_compression"))
+                primitive.erase("indices");
+}
+
+// Buffers without bytes, which only readers that know no EXT_meshopt_compression would miss.
+void stand_in_for_fallbacks(nlohmann::json& gltf) {
+    if (!gltf.contains("buffers")) return;
+    for (nlohmann::json& buffer : gltf["buffers"])
+        if (!buffer.contains("uri") && buffer.contains("extensions") &&
+            buffer["extensions"].is_object() &&
+            buffer["extensions"].contains("EXT_meshopt_compression")) {
+            buffer["byteLength"] = 1;
+            buffer["uri"] = "data:application/octet-stream;base64,AA==";
+        }
+}
+
 }  // namespace
 
 GltfParts split_gltf(const std::string& file, std::string_view bytes) {
@@ -181,6 +209,8 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
                           const JsonText& json) {
     nlohmann::json used = json.root();
     for (const char* section : unused_sections) used.erase(section);
+    stand_in_for_fallbacks(used);
+    leave_out_draco_indices(used);
     std::string text = used.dump();
     if (text.size() > 0xf0000000U || parts.binary.size() > 0xf0000000U)
         json.refuse("", "is larger than 4 GB");
@@ -212,13 +242,13 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
     }
     if (!loaded || !error.empty())
         json.refuse("", error.empty() ? "cannot be read as glTF" : first_line(error));
+    decompress_gltf(model, json);
     return model;
 }
 
 GltfAccessor::GltfAccessor(const tinygltf::Model& model, int index, const JsonText& json) {
     const std::string path = fmt::format("accessors[{}]", index);
     const tinygltf::Accessor& accessor = model.accessors[static_cast<std::size_t>(index)];
-    if (accessor.bufferView < 0) json.refuse(path, "has no bufferView, which is not supported");
     count_ = accessor.count;
     type_ = accessor.type;
     component_type_ = accessor.componentType;
@@ -226,13 +256,21 @@ GltfAccessor::GltfAccessor(const tinygltf::Model& model, int index, const JsonTe
     const std::size_t size =
         component_size(component_type_) * static_cast<std::size_t>(tinygltf::GetNumComponentsInType(
                                               static_cast<std::uint32_t>(type_)));
-    const auto view = static_cast<std::size_t>(accessor.bufferView);
-    const std::size_t given = model.bufferViews[view].byteStride;
-    stride_ = given > 0 ? given : size;
-    if (stride_ < size)
-        json.refuse(path,
-                    fmt::format("its elements of {} bytes stand {} bytes apart", size, stride_));
-    data_ = range(model, view, accessor.byteOffset, count_, stride_, size, json, path);
+    if (accessor.bufferView >= 0) {
+        const auto view = static_cast<std::size_t>(accessor.bufferView);
+        const std::size_t given = model.bufferViews[view].byteStride;
+        stride_ = given > 0 ? given : size;
+        if (stride_ < size)
+            json.refuse(
+                path, fmt::format("its elements of {} bytes stand {} bytes apart", size, stride_));
+        data_ = range(model, view, accessor.byteOffset, count_, stride_, size, json, path);
+    } else if (!accessor.sparse.isSparse || count_ > most_zeros) {
+        json.refuse(path, accessor.sparse.isSparse
+                              ? fmt::format("found {} elements without a bufferView, expected at "
+                                            "most {}",
+                                            count_, most_zeros)
+                              : "has neither a bufferView nor sparse values");
+    }
     if (!accessor.sparse.isSparse) return;
 
     const auto& sparse = accessor.sparse;
@@ -266,16 +304,18 @@ const unsigned char* GltfAccessor::element(std::size_t i) const {
             [](const Replacement& r, std::size_t wanted) { return r.element < wanted; });
         if (found != sparse_.end() && found->element == i) return found->bytes;
     }
-    return data_ + i * stride_;
+    // Without a bufferView, elements are zero (glTF 2.0, section 3.6.2.3).
+    static constexpr std::array<unsigned char, 64> zero{};
+    return data_ ? data_ + i * stride_ : zero.data();
+}
+
+double GltfAccessor::component(std::size_t i, std::size_t c) const {
+    return load_component(element(i) + c * component_size(component_type_), component_type_,
+                          normalised_);
 }
 
 Vec3 GltfAccessor::vec3(std::size_t i) const {
-    const unsigned char* bytes = element(i);
-    const std::size_t size = component_size(component_type_);
-    Vec3 v;
-    for (std::size_t c = 0; c < 3; ++c)
-        v[c] = load_component(bytes + c * size, component_type_, normalised_);
-    return v;
+    return {component(i, 0), component(i, 1), component(i, 2)};
 }
 
 std::uint32_t GltfAccessor::index(std::size_t i) const {

@@ -48,8 +48,11 @@ class GltfAccessor {
     std::size_t count() const { return count_; }
     int type() const { return type_; }
     int component_type() const { return component_type_; }
-    /// Element `i` of a VEC3, normalised integers as fractions. i < count().
+    /// The first three components of element `i` of a VEC3 or VEC4, normalised integers as
+    /// fractions. i < count().
     Vec3 vec3(std::size_t i) const;
+    /// Component `c` of element `i`, which has more than `c`, as above.
+    double component(std::size_t i, std::size_t c) const;
     /// Element `i` of an unsigned integer SCALAR. i < count().
     std::uint32_t index(std::size_t i) const;
 

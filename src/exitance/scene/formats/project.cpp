@@ -216,9 +216,13 @@ class ProjectReader {
     void change(Material& material, const TomlTable& table) const {
         if (const auto rho = table.spectrum("reflectance", 0, 1)) {
             material.reflectance = *rho;
+            material.reflectance_pattern = {};
             material.place = table.place("reflectance");
         }
-        if (const auto e = emission(table)) material.exitance = *e;
+        if (const auto e = emission(table)) {
+            material.exitance = *e;
+            material.exitance_pattern = {};
+        }
         if (const auto group = table.text("group")) material.group = *group;
         if (const auto both = table.flag("two_sided")) material.two_sided = *both;
     }
