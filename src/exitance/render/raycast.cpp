@@ -8,6 +8,7 @@
 
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/visibility/beyond_glass.h"
 
 namespace exitance {
 
@@ -65,12 +66,20 @@ class PacketCaster {
 
     void cast() {
         rays_.active = (1u << filled_) - 1;
-        surfaces_.caster().closest(rays_, hits_);
+        std::array<float, RayPacket::width> weight;
+        weight.fill(weight_);
+        const auto show = [&](std::size_t i, const RayCaster::PacketHits& hits) {
+            const ViewHit hit{Surfaces::place(hits.primitive[i], hits.u[i], hits.v[i]),
+                              position_[i][0], position_[i][1]};
+            out_.image.pixels[pixel_[i]] += shade_(hit) * weight[i];
+        };
+        closest_beyond_glass(surfaces_.caster(), rays_, hits_, [&](auto i, const auto& hits) {
+            show(i, hits);
+            weight[i] *= surfaces_.caster().transmittance(hits.primitive[i]);
+        });
         for (std::size_t i = 0; i < filled_; ++i) {
             if (!(hits_.front >> i & 1u)) continue;
-            const ViewHit hit{Surfaces::place(hits_.primitive[i], hits_.u[i], hits_.v[i]),
-                              position_[i][0], position_[i][1]};
-            out_.image.pixels[pixel_[i]] += shade_(hit) * weight_;
+            show(i, hits_);
             out_.coverage[pixel_[i]] += weight_;
         }
         filled_ = 0;

@@ -12,6 +12,7 @@
 #include "exitance/math/box.h"
 #include "exitance/math/vector.h"
 #include "exitance/run/error.h"
+#include "exitance/scene/distant_light.h"
 #include "exitance/scene/luminaire.h"
 #include "exitance/scene/spectrum.h"
 
@@ -50,6 +51,9 @@ struct Material {
 
     bool emits() const;
     bool transmits() const;
+    /// Share of light that glass lets straight through; 0 for what blocks it. One number, weighted
+    /// by luminance: rays do not carry colours.
+    double clear_transmittance() const;
 };
 
 /// A named set of polygons of one material: a glTF primitive, an OBJ group, a luminaire.
@@ -113,6 +117,7 @@ struct Scene {
     std::vector<Surface> surfaces;
     std::vector<Material> materials;
     std::vector<Luminaire> luminaires;  ///< lamps without geometry
+    std::vector<DistantLight> distant;  ///< sun and sky
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;
     std::vector<Setting> settings;  ///< from [solve] of a project file

@@ -79,6 +79,7 @@ json extras_of(const Material& material) {
              {"exitance", material.exitance},
              {"two_sided", material.two_sided}};
     if (!material.group.empty()) out["group"] = material.group;
+    if (material.clear_transmittance() > 0) out["transmittance"] = material.transmittance;
     if (material.reflectance_file) out["reflectance_file"] = *material.reflectance_file;
     return out;
 }
@@ -239,6 +240,8 @@ Material read_material(const Node& node, std::size_t bands) {
     material.reflectance = extras["reflectance"].spectrum(bands, 1);
     material.exitance = extras["exitance"].spectrum(bands, std::numeric_limits<double>::infinity());
     material.two_sided = extras["two_sided"].flag();
+    if (extras.has("transmittance"))
+        material.transmittance = extras["transmittance"].spectrum(bands, 1);
     if (extras.has("group")) material.group = extras["group"].text();
     if (extras.has("reflectance_file")) {
         const double number = extras["reflectance_file"].number_within(-1e9, 1e9);

@@ -13,6 +13,7 @@
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
 #include "exitance/transport/luminaire_column.h"
+#include "exitance/visibility/beyond_glass.h"
 #include "exitance/visibility/visible_fraction.h"
 
 namespace exitance {
@@ -220,16 +221,22 @@ class Gatherer {
                 rays.direction_y[i] = static_cast<float>(direction.y);
                 rays.direction_z[i] = static_cast<float>(direction.z);
             }
-            surfaces_.caster().closest(rays, hits);
-            for (std::size_t i = 0; i < RayPacket::width; ++i) {
-                if (!(hits.front >> i & 1u)) continue;
-                const auto place = Surfaces::place(hits.primitive[i], hits.u[i], hits.v[i]);
+            std::array<double, RayPacket::width> share;
+            share.fill(1);
+            const auto add = [&](std::size_t i, const RayCaster::PacketHits& met) {
+                if (!(met.front >> i & 1u)) return;
+                const auto place = Surfaces::place(met.primitive[i], met.u[i], met.v[i]);
                 surfaces_.irradiance(place, H);
                 const Material& material = s_.materials[surfaces_.part(place.triangle).material];
                 const std::size_t bands = s_.bands.size();
                 for (std::size_t c = 0; c < sum.size(); ++c)
-                    sum[c] += material.reflectance[c % bands] * H[c];
-            }
+                    sum[c] += share[i] * material.reflectance[c % bands] * H[c];
+            };
+            closest_beyond_glass(surfaces_.caster(), rays, hits, [&](auto i, const auto& met) {
+                add(i, met);
+                share[i] *= double(surfaces_.caster().transmittance(met.primitive[i]));
+            });
+            for (std::size_t i = 0; i < RayPacket::width; ++i) add(i, hits);
         }
         const std::span<double> columns = row(point);
         for (std::size_t c = 0; c < sum.size(); ++c)

@@ -13,11 +13,14 @@ namespace {
 
 RayCaster make_caster(const Scene& scene) {
     std::vector<RayCaster::Face> faces;
+    std::vector<float> transmittance;
     faces.reserve(scene.polygons.size());
-    for (const Polygon& p : scene.polygons)
+    for (const Polygon& p : scene.polygons) {
         faces.push_back({p.corners[0], p.corners[1], p.corners[2],
                          p.size() == 4 ? p.corners[3] : p.corners[2]});
-    return RayCaster(scene.points, faces);
+        transmittance.push_back(static_cast<float>(scene.material(p).clear_transmittance()));
+    }
+    return RayCaster(scene.points, faces, {}, std::move(transmittance));
 }
 
 }  // namespace
