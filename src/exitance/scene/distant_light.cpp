@@ -6,14 +6,14 @@
 
 namespace exitance {
 
-Spectrum DistantLight::radiance(const Vec3& direction) const {
+Spectrum DistantLight::radiance(const Vec3& along) const {
     Spectrum out(colour);
     if (map) {
-        const auto rgb = map->radiance(direction);
+        const auto rgb = map->radiance(along);
         for (std::size_t b = 0; b < out.size(); ++b) out[b] *= strength * rgb[b % 3];
         return out;
     }
-    const double level = strength * (direction.y > 0 ? model.luminance(direction) : ground);
+    const double level = strength * (along.y > 0 ? model.luminance(along) : ground);
     for (double& band : out) band *= level;
     return out;
 }

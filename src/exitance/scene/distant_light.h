@@ -33,8 +33,8 @@ struct DistantLight {
     std::shared_ptr<const RadianceMap> map{};  ///< instead of the model
     double strength = 1;                       ///< factor of model, ground and map
 
-    /// Radiance of a sky along `direction`, unit, per band.
-    Spectrum radiance(const Vec3& direction) const;
+    /// Radiance of a sky along the unit vector `along`, per band.
+    Spectrum radiance(const Vec3& along) const;
     /// Does it shine at all?
     bool shines() const;
 };

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -105,6 +106,13 @@ struct Setting {
     Place place;
 };
 
+/// Factors of light groups under a name, "morning"; groups that it does not name keep their own.
+struct LightScene {
+    std::string name;
+    std::map<std::string, double> factors;
+    Place place{};
+};
+
 struct Scene {
     std::string title;
     Quantity quantity = Quantity::unitless;
@@ -117,7 +125,8 @@ struct Scene {
     std::vector<Surface> surfaces;
     std::vector<Material> materials;
     std::vector<Luminaire> luminaires;  ///< lamps without geometry
-    std::vector<DistantLight> distant;  ///< sun and sky
+    std::vector<DistantLight> distant;   ///< sun and sky
+    std::vector<LightScene> light_scenes;
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;
     std::vector<Setting> settings;  ///< from [solve] of a project file

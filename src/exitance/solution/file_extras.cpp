@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "exitance/solution/file_distant.h"
 #include "exitance/solution/file_layout.h"
 #include "exitance/solution/file_luminaires.h"
 
@@ -114,6 +115,13 @@ json extras_of(const Solution& s) {
                         {"confidence", s.error->confidence},
                         {"points", s.error->points}};
     add_luminaires(out, s);
+    add_distant_lights(out, s);
+    if (!s.light_scenes.empty()) {
+        json scenes = json::array();
+        for (const LightScene& scene : s.light_scenes)
+            scenes.push_back({{"name", scene.name}, {"factors", scene.factors}});
+        out["scenes"] = std::move(scenes);
+    }
     return out;
 }
 
@@ -231,6 +239,15 @@ void read_extras(const Node& extras, Solution& s) {
     for (std::size_t i = 0; i < cameras.size(); ++i) s.cameras.push_back(read_camera(cameras[i]));
     for (std::size_t i = 0; i < grids.size(); ++i) s.grids.push_back(read_grid(grids[i]));
     read_luminaires(extras, s);
+    read_distant_lights(extras, s);
+    for (std::size_t i = 0; extras.has("scenes") && i < extras["scenes"].size(); ++i) {
+        const Node node = extras["scenes"][i], factors = node["factors"];
+        LightScene scene;
+        scene.name = node["name"].text();
+        for (const std::string& group : factors.keys())
+            scene.factors[group] = factors[group].number_within(-1e9, 1e9);
+        s.light_scenes.push_back(std::move(scene));
+    }
 }
 
 Material read_material(const Node& node, std::size_t bands) {

@@ -5,18 +5,21 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <optional>
 
 #include "exitance/math/transform.h"
+#include "exitance/scene/formats/daylight.h"
 #include "exitance/scene/formats/glob.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/luminaires.h"
 #include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/formats/toml_direction.h"
 #include "exitance/scene/formats/toml_table.h"
+#include "exitance/scene/groups.h"
 #include "exitance/scene/merge.h"
 
 namespace exitance {
@@ -42,7 +45,8 @@ class ProjectReader {
         : path_(path),
           root_(TomlTable::parse(path.string(), text, "a project",
                                  {"title", "quantity", "geometry", "polygon", "material",
-                                  "luminaire", "camera", "grid", "solve"})),
+                                  "luminaire", "camera", "grid", "solve", "site", "sky",
+                                  "sun", "scenes"})),
           read_geometry_(read_geometry) {}
 
     Scene read() {
@@ -69,15 +73,19 @@ class ProjectReader {
             polygon(table);
         LuminaireReader lamps(scene_, path_.parent_path());
         for (const TomlTable& table : luminaires) lamps.add(table);
+        add_daylight(scene_, root_, path_.parent_path());
         for (const TomlTable& table :
              root_.tables("camera", {"name", "eye", "look_at", "up", "fov", "aspect"}))
             camera(table);
         for (const TomlTable& table :
-             root_.tables("grid", {"name", "origin", "u", "v", "columns", "rows", "normal"}))
+             root_.tables("grid", {"name", "origin", "u", "v", "columns", "rows",
+                                  "spacing", "margin", "normal"}))
             grid(table);
         // [solve] is kept as text; whoever solves knows the names.
         for (const auto& [name, value, place] : root_.scalars("solve"))
             scene_.settings.push_back({name, value, place});
+        for (const auto& [place, factors] : root_.scalar_tables("scenes"))
+            light_scene(place, factors);
         return std::move(scene_);
     }
 
@@ -299,19 +307,79 @@ class ProjectReader {
     }
 
     void grid(const TomlTable& table) {
-        for (const char* key : {"origin", "u", "v", "columns", "rows"}) table.require(key);
+        for (const char* key : {"origin", "u", "v"}) table.require(key);
         SensorGrid grid;
         grid.name = table.text("name").value_or(fmt::format("grid {}", scene_.grids.size() + 1));
         grid.origin = *table.vector("origin");
         grid.u = *table.vector("u");
         grid.v = *table.vector("v");
-        grid.columns = *table.count("columns", 1, 10000);
-        grid.rows = *table.count("rows", 1, 10000);
+        divide(table, grid);
         const Vec3 across = cross(grid.u, grid.v);
         if (!table.has("normal") && !(length(across) > 0))
             throw Error(table.place("v"), "found 'v' along 'u', expected another direction");
         grid.normal = direction(table, "normal", normalized(across));
         scene_.grids.push_back(std::move(grid));
+    }
+
+    // Columns and rows, by number or by the distance of neighbours, inside a margin.
+    static void divide(const TomlTable& table, SensorGrid& grid) {
+        const double a = length(grid.u), b = length(grid.v);
+        if (const auto margin = table.number("margin", 0, farthest)) {
+            if (!(2 * *margin < std::min(a, b)))
+                table.refuse("margin", "less than half of 'u' and 'v'");
+            grid.origin += grid.u * (*margin / a) + grid.v * (*margin / b);
+            grid.u = grid.u * (1 - 2 * *margin / a);
+            grid.v = grid.v * (1 - 2 * *margin / b);
+        }
+        if (const auto spacing = table.number("spacing", shortest, farthest)) {
+            for (const char* key : {"columns", "rows"})
+                if (table.has(key))
+                    throw Error(table.place(key),
+                                fmt::format("found both 'spacing' and '{}', expected one of them",
+                                            key));
+            const auto count = [&](double side) {
+                const double n = std::max(1.0, std::round(side / *spacing));
+                if (n > 10000) table.refuse("spacing", "at most 10000 points along each side");
+                return static_cast<std::uint32_t>(n);
+            };
+            grid.columns = count(length(grid.u)), grid.rows = count(length(grid.v));
+            return;
+        }
+        for (const char* key : {"columns", "rows"}) table.require(key);
+        grid.columns = *table.count("columns", 1, 10000);
+        grid.rows = *table.count("rows", 1, 10000);
+    }
+
+    // [[scenes]]: a name, and factors by the names of light groups.
+    void light_scene(const Place& place, const std::vector<TomlTable::Scalar>& entries) {
+        LightScene out;
+        out.place = place;
+        std::vector<std::string> known;
+        for (const Grouping grouping : {Grouping::file, Grouping::luminaire, Grouping::material})
+            for (const LightGroup& group : make_groups(scene_, grouping).groups)
+                known.push_back(group.name);
+        for (const TomlTable::Scalar& entry : entries) {
+            if (entry.name == "name") {
+                out.name = as_utf8(entry.value);
+                continue;
+            }
+            if (std::find(known.begin(), known.end(), entry.name) == known.end())
+                throw Error(entry.place, fmt::format("there is no light group {}{}",
+                                                     in_quotes(entry.name),
+                                                     suggestion(entry.name, known)));
+            double factor = 0;
+            const char* end = entry.value.data() + entry.value.size();
+            const auto [rest, failure] = std::from_chars(entry.value.data(), end, factor);
+            if (failure != std::errc{} || rest != end || !(factor >= 0 && factor <= 1e6))
+                throw Error(entry.place, fmt::format("{}: found {}, expected a factor from 0 up",
+                                                     entry.name, in_quotes(entry.value)));
+            out.factors[entry.name] = factor;
+        }
+        if (out.name.empty()) throw Error(place, "[[scenes]] has no 'name'");
+        for (const LightScene& other : scene_.light_scenes)
+            if (other.name == out.name)
+                throw Error(place, fmt::format("there is already a scene {}", in_quotes(out.name)));
+        scene_.light_scenes.push_back(std::move(out));
     }
 
     std::filesystem::path path_;
