@@ -125,7 +125,7 @@ struct Scene {
     std::vector<Surface> surfaces;
     std::vector<Material> materials;
     std::vector<Luminaire> luminaires;  ///< lamps without geometry
-    std::vector<DistantLight> distant;   ///< sun and sky
+    std::vector<DistantLight> distant;  ///< sun and sky
     std::vector<LightScene> light_scenes;
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;

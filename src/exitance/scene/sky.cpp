@@ -81,7 +81,7 @@ constexpr std::array<double, 7> clearness_ends{1.065, 1.230, 1.500, 1.950, 2.800
 
 // Perez et al. 1990, table 4: a + b W + c cos Z + d ln Δ, and a + b W + c exp(5.73 Z − 5) + d Δ.
 constexpr double diffuse_efficacy[8][4] = {
-    {97.24, -0.46, 12.00, -8.91},   {107.22, 1.15, 0.59, -3.95},   {104.97, 2.96, -5.53, -8.77},
+    {97.24, -0.46, 12.00, -8.91},   {107.22, 1.15, 0.59, -3.95},    {104.97, 2.96, -5.53, -8.77},
     {102.39, 5.59, -13.95, -13.90}, {100.71, 5.94, -22.75, -23.74}, {106.42, 3.83, -36.15, -28.83},
     {141.88, 1.90, -53.24, -14.03}, {152.23, 0.35, -45.27, -7.98}};
 constexpr double direct_efficacy[8][4] = {
@@ -127,7 +127,8 @@ SkyConditions sky_conditions(const MeasuredDaylight& measured, double altitude, 
     const double k = 1.041 * zenith * zenith * zenith;
     const double diffuse = std::max(measured.diffuse_horizontal, 1e-9);
     out.clearness = ((diffuse + measured.direct_normal) / diffuse + k) / (1 + k);
-    // Relative optical air mass (Kasten & Young 1989), and the irradiance outside of the atmosphere.
+    // Relative optical air mass (Kasten & Young 1989), and the irradiance outside of the
+    // atmosphere.
     const double degrees = altitude * 180 / pi;
     const double mass = 1 / (std::sin(altitude) + 0.50572 * std::pow(degrees + 6.07995, -1.6364));
     const double outside = 1367 * (1 + 0.033 * std::cos(2 * pi * day_of_year / 365));

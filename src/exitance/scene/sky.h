@@ -13,8 +13,8 @@ namespace exitance {
 
 /// L(Z, χ) = scale · φ(Z) f(χ) above the horizon, Z the angle from the zenith, χ that from the sun.
 struct SkyModel {
-    /// φ = 1 + a exp(b / cos Z), f = 1 + c (exp(dχ) − exp(dπ/2)) + e cos²χ (ISO 15469:2004, eq. 1–7;
-    /// Perez, Seals & Michalsky 1993 without the constant of c). All zero: uniform.
+    /// φ = 1 + a exp(b / cos Z), f = 1 + c (exp(dχ) − exp(dπ/2)) + e cos²χ (ISO 15469:2004, eq.
+    /// 1–7; Perez, Seals & Michalsky 1993 without the constant of c). All zero: uniform.
     double a = 0, b = -1, c = 0, d = -1, e = 0;
     bool traditional_overcast = false;  ///< φ = (1 + 2 cos Z) / 3 (Moon & Spencer 1942), f = 1
     double circumsolar_offset = 1;      ///< factor of exp(dπ/2): 1 CIE, 0 Perez

@@ -55,8 +55,8 @@ SunPosition sun_position(double latitude, double longitude, const Moment& moment
     const double mean_obliquity =
         23.439291111 - T * (0.013004167 + T * (1.64e-7 - T * 5.04e-7));  // eq. 22.2
     const double obliquity = (mean_obliquity + 0.00256 * std::cos(node)) * degree;
-    const double alpha = std::atan2(std::cos(obliquity) * std::sin(longitude_of_sun),
-                                    std::cos(longitude_of_sun));
+    const double alpha =
+        std::atan2(std::cos(obliquity) * std::sin(longitude_of_sun), std::cos(longitude_of_sun));
     const double delta = std::asin(std::sin(obliquity) * std::sin(longitude_of_sun));
 
     // Apparent sidereal time of the place (eq. 12.4), hour angle, horizontal coordinates (13.5, 6).
@@ -64,8 +64,8 @@ SunPosition sun_position(double latitude, double longitude, const Moment& moment
                             0.00478 * std::sin(node) * std::cos(obliquity) + longitude;
     const double H = sidereal * degree - alpha;
     const double phi = latitude * degree;
-    const double altitude = std::asin(std::sin(phi) * std::sin(delta) +
-                                      std::cos(phi) * std::cos(delta) * std::cos(H));
+    const double altitude =
+        std::asin(std::sin(phi) * std::sin(delta) + std::cos(phi) * std::cos(delta) * std::cos(H));
     const double azimuth = std::atan2(
         std::sin(H), std::cos(H) * std::sin(phi) - std::tan(delta) * std::cos(phi));  // from south
 

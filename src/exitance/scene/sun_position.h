@@ -28,8 +28,8 @@ struct SunPosition {
 };
 
 /// The true direction to the middle of the sun (Meeus 1998, chapters 12, 13, 22 and 25), without
-/// refraction, which lifts it by 0.03° at 30°, 0.1° at 8° and 0.5° on the horizon. Within 0.01° from
-/// 1900 to 2100; the difference between universal and dynamical time is taken as 69 s.
+/// refraction, which lifts it by 0.03° at 30°, 0.1° at 8° and 0.5° on the horizon. Within 0.01°
+/// from 1900 to 2100; the difference between universal and dynamical time is taken as 69 s.
 /// `latitude`, `longitude` in degrees, north and east positive.
 SunPosition sun_position(double latitude, double longitude, const Moment& moment);
 

@@ -186,18 +186,19 @@ class Gatherer {
                                        const Receivers& receivers,
                                        std::span<const std::uint32_t> which) const {
         const auto number = static_cast<std::uint32_t>(hash_bits(0x1abULL, l));
-        return in_rounds(which, [&](const ColumnOptions& options,
-                                    std::span<const std::uint32_t> open,
-                                    std::span<ColumnEntry> entries) {
-            compute_luminaire_column(surfaces_.caster(), source, all_rays, number, receivers, open,
-                                     options, entries);
-        });
+        return in_rounds(which,
+                         [&](const ColumnOptions& options, std::span<const std::uint32_t> open,
+                             std::span<ColumnEntry> entries) {
+                             compute_luminaire_column(surfaces_.caster(), source, all_rays, number,
+                                                      receivers, open, options, entries);
+                         });
     }
 
     /// Light of `column`: all receivers once, and rounds with fresh patterns for those that see its
     /// source partly.
     template <class Column>
-    std::vector<double> in_rounds(std::span<const std::uint32_t> which, const Column& column) const {
+    std::vector<double> in_rounds(std::span<const std::uint32_t> which,
+                                  const Column& column) const {
         constexpr std::uint32_t rays_of_round = 256;
         ColumnOptions options;
         std::vector<ColumnEntry> entries(which.size());

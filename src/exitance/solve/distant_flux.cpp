@@ -90,8 +90,7 @@ double received_flux(const Radiosity& radiosity, std::size_t which, std::uint64_
                 const std::uint64_t own = hash_bits(key, 1, i);
                 const auto w = uniform_triangle({uniform(own, 0), uniform(own, 1)});
                 const Vec3 place = piece.corner + piece.u * w[1] + piece.v * w[2];
-                const Way way =
-                    way_to(light, piece.normal, low_discrepancy(hash_bits(key, 2), i));
+                const Way way = way_to(light, piece.normal, low_discrepancy(hash_bits(key, 2), i));
                 if (!(way.light > 0)) continue;
                 brought[k] = way.light;
                 const Vec3f o(place + piece.normal * caster.clearance() - caster.middle());

@@ -83,8 +83,8 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
     for (std::size_t l = 0; l < scene.distant.size(); ++l) {
         const DistantLight& light = scene.distant[l];
         for (std::size_t b = 0; b < columns.bands; ++b)
-            emitted_from_afar_[l * columns.stride + groups.group_of_distant[l] * columns.bands + b] =
-                static_cast<float>(light.colour[b]);
+            emitted_from_afar_[l * columns.stride + groups.group_of_distant[l] * columns.bands +
+                               b] = static_cast<float>(light.colour[b]);
         if (light.kind == DistantLight::Kind::sky && light.shines()) skies.emplace_back(l, light);
     }
     for (const Polygon& p : scene.polygons) two_sided_.push_back(scene.material(p).two_sided);
@@ -96,7 +96,8 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
         emitted_flux_ += a * static_cast<double>(columns.luminance(emitted(face)));
     }
     for (std::size_t l = 0; l < scene.distant.size(); ++l)
-        emitted_flux_ += groups.groups[groups.group_of_distant[l]].weight * received_flux(*this, l, 0);
+        emitted_flux_ +=
+            groups.groups[groups.group_of_distant[l]].weight * received_flux(*this, l, 0);
     admit_new_vertices();
 }
 

@@ -42,7 +42,7 @@ class Radiosity {
     Columns columns;
     RayCaster caster;
     PlaceOwners owners;
-    std::vector<LuminaireSource> luminaires;  ///< emit, and are not in the mesh
+    std::vector<LuminaireSource> luminaires;               ///< emit, and are not in the mesh
     std::vector<std::pair<std::size_t, SkySource>> skies;  ///< by their index in Scene::distant
     Mesh mesh;
 

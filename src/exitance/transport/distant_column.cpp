@@ -133,7 +133,8 @@ class Skyward {
                 if (weight[lane] > 0) rays_.aim(lane, d);
             }
             const auto& through = rays_.cast(occlusion_);
-            for (std::size_t k = 0; k < n; ++k) decide(now[first + k], &weight[4 * k], &through[4 * k]);
+            for (std::size_t k = 0; k < n; ++k)
+                decide(now[first + k], &weight[4 * k], &through[4 * k]);
         }
     }
 
@@ -146,8 +147,7 @@ class Skyward {
             least = std::min(least, through[i]), most = std::max(most, through[i]);
         }
         const bool partly = all > 0 && least < most;
-        if (partly && open.light > partly_seen_cell * tolerance_ &&
-            open.cell.level < finest_edge) {
+        if (partly && open.light > partly_seen_cell * tolerance_ && open.cell.level < finest_edge) {
             for (std::uint32_t k = 0; k < 4; ++k) {
                 const SkySource::Cell child = open.cell.child(k);
                 const double light = std::max(0.0, dot(sky_.vector(child), normal_));

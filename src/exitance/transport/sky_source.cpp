@@ -50,8 +50,8 @@ SkySource::SkySource(const DistantLight& light)
             const double part =
                 2 * std::numbers::pi / double(1u << (2 * finest_)) / (samples * samples);
             for (std::uint32_t i = 0; i < samples * samples; ++i) {
-                const Vec3 d = cell.direction((i % samples + 0.5) / samples,
-                                              (i / samples + 0.5) / samples);
+                const Vec3 d =
+                    cell.direction((i % samples + 0.5) / samples, (i / samples + 0.5) / samples);
                 const Spectrum L = light_.radiance(d);
                 for (std::size_t b = 0; b < bands_; ++b) J[b] += d * (L[b] * part);
             }
@@ -65,14 +65,15 @@ SkySource::SkySource(const DistantLight& light)
         Node& node = nodes_[here];
         for (std::size_t b = 0; b < bands_; ++b) node.luminance += J[b] * weights[b];
         node.axis = cell.direction(0.5, 0.5);
-        double least = 1;  // cosine of the farthest corner; sides bend outwards by far less than 2 %
+        double least =
+            1;  // cosine of the farthest corner; sides bend outwards by far less than 2 %
         for (std::uint32_t k = 0; k < 4; ++k)
             least = std::min(least, dot(node.axis, cell.direction(k & 1u, k >> 1)));
-        node.sine =
-            cell.level < 2 ? 1.0 : std::min(1.0, 1.02 * std::sqrt(std::max(0.0, 1 - least * least)));
+        node.sine = cell.level < 2
+                        ? 1.0
+                        : std::min(1.0, 1.02 * std::sqrt(std::max(0.0, 1 - least * least)));
     };
-    for (const bool lower : {false, true})
-        fill(fill, Cell{0, lower ? 1u : 0u, 0, 0, lower});
+    for (const bool lower : {false, true}) fill(fill, Cell{0, lower ? 1u : 0u, 0, 0, lower});
 }
 
 std::size_t SkySource::at(const Cell& cell) const {
@@ -104,7 +105,8 @@ SkySource::Cell ancestor(const SkySource::Cell& cell, std::uint32_t level) {
 
 Vec3 SkySource::vector(const Cell& cell) const {
     if (cell.level <= finest_) return nodes_[at(cell)].luminance;
-    return nodes_[at(ancestor(cell, finest_))].luminance / double(1u << (2 * (cell.level - finest_)));
+    return nodes_[at(ancestor(cell, finest_))].luminance /
+           double(1u << (2 * (cell.level - finest_)));
 }
 
 Vec3 SkySource::vector(const Cell& cell, std::size_t band) const {

@@ -36,8 +36,8 @@ class RayCaster {
 
     /// `faces` index `points`; positions are stored in float relative to the middle of the scene.
     /// closest() goes through the back of face i where `open_backs[i]`; none by default. Face i is
-    /// glass where `transmittance[i]` > 0, the share of light that goes straight through it: it does
-    /// not occlude. Throws Error(could_not_finish) when Embree runs out of memory.
+    /// glass where `transmittance[i]` > 0, the share of light that goes straight through it: it
+    /// does not occlude. Throws Error(could_not_finish) when Embree runs out of memory.
     RayCaster(std::span<const Vec3> points, std::span<const Face> faces,
               std::vector<char> open_backs = {}, std::vector<float> transmittance = {});
     ~RayCaster();
@@ -60,7 +60,8 @@ class RayCaster {
     bool has_glass() const;
     /// Of a face: the share of light that goes straight through; 0 = it blocks.
     float transmittance(std::uint32_t primitive) const;
-    /// The nearest primitive, glass too, on the ray from `origin` along `direction`, within (near, far).
+    /// The nearest primitive, glass too, on the ray from `origin` along `direction`, within (near,
+    /// far).
     std::optional<RayHit> closest(const Vec3& origin, const Vec3& direction, double near,
                                   double far) const;
     /// Nearest hits of a packet: primitive index (none = 0xffffffff), distance, and whether the

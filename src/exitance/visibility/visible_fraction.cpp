@@ -117,7 +117,7 @@ struct Sums {
     float kernel = 0, seen = 0, disk = 0;
     std::uint16_t samples = 0;
     bool any_seen = false, any_hidden = false, uneven = false;  // uneven: through other glass
-    float through = -1;  // of the first that was seen
+    float through = -1;                                         // of the first that was seen
 };
 
 }  // namespace

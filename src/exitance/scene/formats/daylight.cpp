@@ -10,6 +10,7 @@
 #include "exitance/scene/formats/environment_map.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/luminaire_keys.h"
+#include "exitance/scene/formats/project_keys.h"
 #include "exitance/scene/formats/toml_direction.h"
 #include "exitance/scene/merge.h"
 #include "exitance/scene/sun_position.h"
@@ -45,9 +46,9 @@ class DaylightReader {
     DaylightReader(Scene& scene, const TomlTable& project, const std::filesystem::path& folder)
         : scene_(scene),
           folder_(folder),
-          site_(project.table("site", site_keys())),
-          sky_(project.table("sky", sky_keys())),
-          sun_(project.table("sun", sun_keys())) {}
+          site_(project.table("site", project_keys("site"))),
+          sky_(project.table("sky", project_keys("sky"))),
+          sun_(project.table("sun", project_keys("sun"))) {}
 
     void read() {
         if (!sky_ && !sun_) return;
@@ -95,14 +96,13 @@ class DaylightReader {
         if (to_sun_) altitude_ = std::asin(std::clamp(to_sun_->y, -1.0, 1.0));
     }
 
-    double north() const {
-        return site_ ? site_->number("north", -360, 360).value_or(0) : 0;
-    }
+    double north() const { return site_ ? site_->number("north", -360, 360).value_or(0) : 0; }
 
     [[noreturn]] void demand_sun(const TomlTable& table, const std::string& why) const {
         throw Error(table.place(),
-                    why + " needs to know where the sun stands: [site] with latitude, longitude "
-                          "and time, or the altitude or direction in [sun]");
+                    why +
+                        " needs to know where the sun stands: [site] with latitude, longitude "
+                        "and time, or the altitude or direction in [sun]");
     }
 
     // A number in lux of the laws above, in the unit of the scene.
@@ -166,13 +166,13 @@ class DaylightReader {
             day_kind_ = type >= 11 ? clear_day : type >= 6 ? partly_cloudy_day : overcast_day;
             return in_units(sky_illuminance(day_kind_, altitude_.value_or(45 * degree)));
         }
-        if (model != "perez")
-            sky_->refuse("model", "overcast, clear, cie, perez, uniform or map");
+        if (model != "perez") sky_->refuse("model", "overcast, clear, cie, perez, uniform or map");
         for (const char* key : {"direct_normal", "diffuse_horizontal"}) sky_->require(key);
         if (!to_sun_) demand_sun(*sky_, "this sky");
         if (!(*altitude_ > 0.5 * degree))
-            throw Error(sky_->place("model"), "found the sun below half a degree, where this model "
-                                              "has no meaning");
+            throw Error(sky_->place("model"),
+                        "found the sun below half a degree, where this model "
+                        "has no meaning");
         light.model = read_perez(light);
         return perez_diffuse_;
     }
@@ -211,14 +211,13 @@ class DaylightReader {
 
     void read_sun() {
         if (!to_sun_) demand_sun(*sun_, "[sun]");
-        const double expected =
-            in_units(sun_illuminance(day_kind_.extinction > 0 ? day_kind_ : clear_day, *altitude_,
-                                     day_));
+        const double expected = in_units(
+            sun_illuminance(day_kind_.extinction > 0 ? day_kind_ : clear_day, *altitude_, day_));
         // What is behind a uniform or overcast sky does not shine unless asked to.
-        const bool hidden = sky_ && day_kind_.extinction == 0 && !perez_direct_ &&
-                            *sky_->text("model") != "map";
-        const double level = sun_->number("normal", 0, most)
-                                 .value_or(perez_direct_.value_or(hidden ? 0 : expected));
+        const bool hidden =
+            sky_ && day_kind_.extinction == 0 && !perez_direct_ && *sky_->text("model") != "map";
+        const double level =
+            sun_->number("normal", 0, most).value_or(perez_direct_.value_or(hidden ? 0 : expected));
         add_sun(level * lamp_factor(*sun_), sun_, sun_->place());
     }
 
@@ -246,23 +245,6 @@ class DaylightReader {
 };
 
 }  // namespace
-
-std::vector<std::string> site_keys() {
-    return {"latitude", "longitude", "time", "time_zone", "north"};
-}
-
-std::vector<std::string> sky_keys() {
-    return {"model",         "type",        "zenith_luminance",   "horizontal",
-            "direct_normal", "name",        "diffuse_horizontal", "ground_reflectance",
-            "file",          "rotation",    "scale",              "color",
-            "multiplier",    "dimming",     "maintenance",        "color_temperature",
-            "group"};
-}
-
-std::vector<std::string> sun_keys() {
-    return {"altitude", "azimuth",    "direction", "normal",      "diameter",         "name",
-            "color",    "multiplier", "dimming",   "maintenance", "color_temperature", "group"};
-}
 
 void add_daylight(Scene& scene, const TomlTable& project, const std::filesystem::path& folder) {
     DaylightReader(scene, project, folder).read();

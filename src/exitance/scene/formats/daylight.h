@@ -3,17 +3,11 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "exitance/scene/formats/toml_table.h"
 #include "exitance/scene/scene.h"
 
 namespace exitance {
-
-std::vector<std::string> site_keys();
-std::vector<std::string> sky_keys();
-std::vector<std::string> sun_keys();
 
 /// Adds the sun and the sky that the project asks for to `scene`, whose quantity is decided.
 /// `folder`: of the project, for files.

@@ -30,8 +30,9 @@ struct Panorama {
 
 void check_size(long width, long height, const Place& named) {
     if (width < 2 || height < 1 || width > widest || height > highest)
-        throw Error(named, fmt::format("found a picture of {} × {} pixels, expected at most {} × {}",
-                                       width, height, widest, highest));
+        throw Error(
+            named, fmt::format("found a picture of {} × {} pixels, expected at most {} × {}", width,
+                               height, widest, highest));
 }
 
 Panorama read_hdr(const std::filesystem::path& path, const Place& named) {
@@ -42,7 +43,8 @@ Panorama read_hdr(const std::filesystem::path& path, const Place& named) {
     const std::unique_ptr<float, void (*)(void*)> data(
         stbi_loadf(path.c_str(), &width, &height, &channels, 3), stbi_image_free);
     if (!data)
-        throw Error(named, fmt::format("{} cannot be read: {}", path.string(), stbi_failure_reason()));
+        throw Error(named,
+                    fmt::format("{} cannot be read: {}", path.string(), stbi_failure_reason()));
     Panorama out{static_cast<std::size_t>(width), static_cast<std::size_t>(height), {}};
     out.pixels.assign(data.get(), data.get() + 3 * out.width * out.height);
     return out;
@@ -52,7 +54,8 @@ Panorama read_exr(const std::filesystem::path& path, const Place& named) {
     try {
         Imf::InputFile file(path.c_str());
         const auto box = file.header().dataWindow();
-        const long width = long{box.max.x} - box.min.x + 1, height = long{box.max.y} - box.min.y + 1;
+        const long width = long{box.max.x} - box.min.x + 1,
+                   height = long{box.max.y} - box.min.y + 1;
         check_size(width, height, named);
         const bool grey = !file.header().channels().findChannel("R");
         const auto w = static_cast<std::size_t>(width), h = static_cast<std::size_t>(height);
@@ -98,8 +101,8 @@ RadianceMap read_environment_map(const std::filesystem::path& path, double rotat
     std::vector<double> sum(std::size_t{6} * n * n), weight(std::size_t{2} * n * n);
     const auto turn = rotation * pi / 180;
     // Every pixel's light, by as many places of it as make it finer than the cells.
-    const auto finer = static_cast<std::size_t>(
-        std::clamp(std::ceil(8.0 * n / double(picture.width)), 1.0, 64.0));
+    const auto finer =
+        static_cast<std::size_t>(std::clamp(std::ceil(8.0 * n / double(picture.width)), 1.0, 64.0));
     for (std::size_t y = 0; y < picture.height * finer; ++y) {
         const double zenith = pi * (double(y) + 0.5) / double(picture.height * finer);
         for (std::size_t x = 0; x < picture.width * finer; ++x) {

@@ -16,6 +16,7 @@
 #include "exitance/scene/formats/glob.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/luminaires.h"
+#include "exitance/scene/formats/project_keys.h"
 #include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/formats/toml_direction.h"
 #include "exitance/scene/formats/toml_table.h"
@@ -43,20 +44,15 @@ class ProjectReader {
     ProjectReader(const std::filesystem::path& path, std::string_view text,
                   const ReadGeometry& read_geometry)
         : path_(path),
-          root_(TomlTable::parse(path.string(), text, "a project",
-                                 {"title", "quantity", "geometry", "polygon", "material",
-                                  "luminaire", "camera", "grid", "solve", "site", "sky",
-                                  "sun", "scenes"})),
+          root_(TomlTable::parse(path.string(), text, "a project", project_keys(""))),
           read_geometry_(read_geometry) {}
 
     Scene read() {
         scene_.title = root_.text("title").value_or(as_utf8(path_.stem().string()));
-        const auto materials = root_.tables("material", {"match", "name", "reflectance", "exitance",
-                                                         "luminance", "group", "two_sided"});
-        const auto luminaires = root_.tables("luminaire", luminaire_keys());
+        const auto materials = root_.tables("material", project_keys("material"));
+        const auto luminaires = root_.tables("luminaire", project_keys("luminaire"));
         std::vector<Part> parts;
-        for (const TomlTable& table :
-             root_.tables("geometry", {"file", "unit", "up", "translate", "rotate", "scale"}))
+        for (const TomlTable& table : root_.tables("geometry", project_keys("geometry")))
             parts.push_back(geometry(table));
         decide_quantity(materials, luminaires, parts);
         if (!parts.empty()) scene_.up = normalized(parts[0].placing.vector(parts[0].scene.up));
@@ -68,19 +64,13 @@ class ProjectReader {
             merge(scene_, std::move(part.scene), part.placing);
         }
         for (const TomlTable& table : materials) material(table);
-        for (const TomlTable& table :
-             root_.tables("polygon", {"corners", "material", "patches", "name"}))
+        for (const TomlTable& table : root_.tables("polygon", project_keys("polygon")))
             polygon(table);
         LuminaireReader lamps(scene_, path_.parent_path());
         for (const TomlTable& table : luminaires) lamps.add(table);
         add_daylight(scene_, root_, path_.parent_path());
-        for (const TomlTable& table :
-             root_.tables("camera", {"name", "eye", "look_at", "up", "fov", "aspect"}))
-            camera(table);
-        for (const TomlTable& table :
-             root_.tables("grid", {"name", "origin", "u", "v", "columns", "rows",
-                                  "spacing", "margin", "normal"}))
-            grid(table);
+        for (const TomlTable& table : root_.tables("camera", project_keys("camera"))) camera(table);
+        for (const TomlTable& table : root_.tables("grid", project_keys("grid"))) grid(table);
         // [solve] is kept as text; whoever solves knows the names.
         for (const auto& [name, value, place] : root_.scalars("solve"))
             scene_.settings.push_back({name, value, place});
@@ -228,6 +218,12 @@ class ProjectReader {
         }
         if (const auto e = emission(table)) material.exitance = *e;
         if (const auto group = table.text("group")) material.group = *group;
+        if (const auto tau = table.spectrum("transmittance", 0, 1)) {
+            material.transmittance = *tau;
+            for (std::size_t b = 0; b < tau->size(); ++b)
+                if ((*tau)[b] + material.reflectance[b] > 1)
+                    table.refuse("transmittance", "at most 1 together with the reflectance");
+        }
         if (const auto both = table.flag("two_sided")) material.two_sided = *both;
     }
 
@@ -334,9 +330,9 @@ class ProjectReader {
         if (const auto spacing = table.number("spacing", shortest, farthest)) {
             for (const char* key : {"columns", "rows"})
                 if (table.has(key))
-                    throw Error(table.place(key),
-                                fmt::format("found both 'spacing' and '{}', expected one of them",
-                                            key));
+                    throw Error(
+                        table.place(key),
+                        fmt::format("found both 'spacing' and '{}', expected one of them", key));
             const auto count = [&](double side) {
                 const double n = std::max(1.0, std::round(side / *spacing));
                 if (n > 10000) table.refuse("spacing", "at most 10000 points along each side");
@@ -364,9 +360,9 @@ class ProjectReader {
                 continue;
             }
             if (std::find(known.begin(), known.end(), entry.name) == known.end())
-                throw Error(entry.place, fmt::format("there is no light group {}{}",
-                                                     in_quotes(entry.name),
-                                                     suggestion(entry.name, known)));
+                throw Error(entry.place,
+                            fmt::format("there is no light group {}{}", in_quotes(entry.name),
+                                        suggestion(entry.name, known)));
             double factor = 0;
             const char* end = entry.value.data() + entry.value.size();
             const auto [rest, failure] = std::from_chars(entry.value.data(), end, factor);
