@@ -112,7 +112,10 @@ TEST(Daylight, AWindowIsAPolygonOfTheSky) {
     // behind the point nothing lies below the window's sill. On the floor: Howell B-4 twice, less
     // the part below the sill.
     for (const bool glazed : {false, true}) {
-        const Solution solution = light(box_with_window(glazed), {});
+        SolveOptions options;
+        options.error = 0.005;
+        options.patch_size = 0.1;  // nothing is refined where nothing is reflected
+        const Solution solution = light(box_with_window(glazed), options);
         for (const double z : {0.8, 1.5, 3.2}) {
             const double x = 1.7;
             double factor = 0;
@@ -125,7 +128,8 @@ TEST(Daylight, AWindowIsAPolygonOfTheSky) {
             const Surfaces surfaces(solution, Backs::black);
             std::vector<double> found(3);
             ASSERT_TRUE(probe_surface(surfaces, {x, 0, z}, {0, 1, 0}, found));
-            EXPECT_NEAR(found[1], exact, 0.03 * exact + 2) << "interpolated, " << z;
+            EXPECT_NEAR(found[1], exact, 0.03 * exact + 4)
+                << z << " m: 0.5 % of the mean of all faces, 800 lx for the outer ones, on top";
         }
     }
 }
@@ -137,7 +141,7 @@ TEST(Daylight, TheSunCastsShadowsOfItsSize) {
     add_floor(scene, 0.3, 8);
     const auto roof = testing::add_surface(scene, "roof", 0);
     scene.materials[scene.surfaces[roof].material].two_sided = true;
-    testing::add_polygon(scene, roof, {{-1, 2, -1}, {-1, 2, 1}, {1, 2, 1}, {1, 2, -1}});
+    testing::add_polygon(scene, roof, {{-0.93, 2, -1}, {-0.93, 2, 1}, {1.07, 2, 1}, {1.07, 2, -1}});
     scene.distant.push_back(sun_from({1, 1, 0}, 50000, 0.53));
     const Solution solution = light(scene, {});
     const double open = 50000 * std::sqrt(0.5);
@@ -148,9 +152,9 @@ TEST(Daylight, TheSunCastsShadowsOfItsSize) {
         return found[1];
     };
     EXPECT_NEAR(at(-2, 0), 0, 0.01 * open) << "the middle of the shadow";
-    EXPECT_NEAR(at(-0.8, 0.3), open, 0.02 * open);
+    EXPECT_NEAR(at(-0.7, 0.3), open, 0.02 * open);
     EXPECT_NEAR(at(2.5, 0), open, 0.01 * open);
-    EXPECT_NEAR(gathered(solution, {-1, 0, 0}, {0, 1, 0}), 0.5 * open, 0.05 * open)
+    EXPECT_NEAR(gathered(solution, {-0.93, 0, 0}, {0, 1, 0}), 0.5 * open, 0.05 * open)
         << "half of the sun stands above the edge";
     EXPECT_LT(std::abs(solution.energy.imbalance()), 0.01);
     EXPECT_GT(solution.positions.size(), 2000U) << "the mesh follows the shadow";

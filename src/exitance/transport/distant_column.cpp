@@ -21,7 +21,7 @@ constexpr std::size_t width = RayPacket::width;
 // In tolerances: cells are halved until they can bring no more than this before anything is known
 // of them; and while they are seen partly, until they bring less than that. What four rays say of
 // such a cell is wrong by a quarter of it; there are a hundred of them at the edge of a window.
-constexpr double unseen_cell = 16, partly_seen_cell = 0.3, horizon_cell = 0.3;
+constexpr double unseen_cell = 8, partly_seen_cell = 0.3, horizon_cell = 0.3;
 constexpr std::uint32_t finest_probe = 6, finest_edge = 11;
 
 /// Rays from one place to infinity, sixteen at a time.
@@ -115,39 +115,87 @@ class Skyward {
         }
     }
 
-    // Four rays into the quarters of each open cell; those seen partly are opened further.
+    /// What four rays say of a cell.
+    struct Seen {
+        double all = 0, seen = 0;
+        float least = 1, most = 0;
+        bool partly() const { return all > 0 && least < most; }
+    };
+
+    // Four rays into the quarters of each open cell; those seen partly are opened further, and at
+    // first those beside others that are seen differently: an edge passes near.
     void cast_open() {
         std::vector<Open> now;
         now.swap(open_);
+        const bool first_time = now.front().fresh;
+        std::vector<Seen> seen(now.size());
         for (std::size_t first = 0; first < now.size(); first += width / 4) {
             const std::size_t n = std::min(width / 4, now.size() - first);
             std::array<double, width> weight{};
             for (std::size_t lane = 0; lane < 4 * n; ++lane) {
-                const Open& open = now[first + lane / 4];
-                const auto u = static_cast<std::uint64_t>(open.cell.index) * 64 + open.cell.level;
-                const double s = uniform(key_, 8 * u + 2 * (lane % 4));
-                const double t = uniform(key_, 8 * u + 2 * (lane % 4) + 1);
-                const Vec3 d = open.cell.direction(0.5 * (double(lane & 1u) + s),
-                                                   0.5 * (double(lane >> 1 & 1u) + t));
+                const SkySource::Cell& cell = now[first + lane / 4].cell;
+                const std::uint64_t own = hash_bits(key_, cell.index, cell.level);
+                const double s = uniform(own, 2 * (lane % 4)), t = uniform(own, 2 * (lane % 4) + 1);
+                const Vec3 d = cell.direction(0.5 * (double(lane & 1u) + s),
+                                              0.5 * (double(lane >> 1 & 1u) + t));
                 weight[lane] = std::max(0.0, dot(d, normal_));
                 if (weight[lane] > 0) rays_.aim(lane, d);
             }
             const auto& through = rays_.cast(occlusion_);
-            for (std::size_t k = 0; k < n; ++k)
-                decide(now[first + k], &weight[4 * k], &through[4 * k]);
+            for (std::size_t lane = 0; lane < 4 * n; ++lane) {
+                if (!(weight[lane] > 0)) continue;
+                Seen& s = seen[first + lane / 4];
+                s.all += weight[lane], s.seen += weight[lane] * double(through[lane]);
+                s.least = std::min(s.least, through[lane]);
+                s.most = std::max(s.most, through[lane]);
+            }
+        }
+        std::vector<char> at_edge(now.size(), 0);
+        if (first_time) find_edges(now, seen, at_edge);
+        for (std::size_t i = 0; i < now.size(); ++i) decide(now[i], seen[i], at_edge[i] != 0);
+    }
+
+    // Cells with a neighbour of the same level that is seen differently.
+    static void find_edges(const std::vector<Open>& cells, const std::vector<Seen>& seen,
+                           std::vector<char>& at_edge) {
+        constexpr std::uint32_t side = 1u << finest_probe;
+        constexpr float unknown = -1;
+        std::array<std::vector<float>, finest_probe + 1> levels;
+        const auto place = [](const SkySource::Cell& cell, int right, int down) {
+            const auto n = static_cast<int>(1u << cell.level);
+            const int column = static_cast<int>(std::lround(cell.u * n)) + right;
+            const int row = static_cast<int>(std::lround(cell.v * n)) + down;
+            const bool outside = column < 0 || row < 0 || column >= n || row >= n;
+            return outside ? std::size_t{2} * side * side
+                           : static_cast<std::size_t>((cell.lower ? n * n : 0) + row * n + column);
+        };
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const SkySource::Cell& cell = cells[i].cell;
+            if (cell.level > finest_probe) continue;
+            auto& level = levels[cell.level];
+            if (level.empty()) level.assign(std::size_t{2} << (2 * cell.level), unknown);
+            level[place(cell, 0, 0)] =
+                seen[i].all > 0 ? static_cast<float>(seen[i].seen / seen[i].all) : unknown;
+        }
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const SkySource::Cell& cell = cells[i].cell;
+            if (cell.level > finest_probe) continue;
+            const auto& level = levels[cell.level];
+            const float here = level[place(cell, 0, 0)];
+            constexpr std::array<std::array<int, 2>, 4> steps{{{-1, 0}, {1, 0}, {0, -1}, {0, 1}}};
+            for (const auto& [right, down] : steps) {
+                const std::size_t beside = place(cell, right, down);
+                if (beside < level.size() && level[beside] != unknown &&
+                    std::abs(level[beside] - here) > 0.01f)
+                    at_edge[i] = 1;
+            }
         }
     }
 
-    void decide(const Open& open, const double* weight, const float* through) {
-        double all = 0, seen = 0;
-        float least = 1, most = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            if (!(weight[i] > 0)) continue;
-            all += weight[i], seen += weight[i] * double(through[i]);
-            least = std::min(least, through[i]), most = std::max(most, through[i]);
-        }
-        const bool partly = all > 0 && least < most;
-        if (partly && open.light > partly_seen_cell * tolerance_ && open.cell.level < finest_edge) {
+    void decide(const Open& open, const Seen& found, bool at_edge) {
+        const bool partly = found.partly();
+        if ((partly || at_edge) && open.light > partly_seen_cell * tolerance_ &&
+            open.cell.level < finest_edge) {
             for (std::uint32_t k = 0; k < 4; ++k) {
                 const SkySource::Cell child = open.cell.child(k);
                 const double light = std::max(0.0, dot(sky_.vector(child), normal_));
@@ -156,7 +204,7 @@ class Skyward {
             return;
         }
         // No ray above the receiver's horizon: what little there is counts as seen.
-        const double share = all > 0 ? seen / all : 1.0;
+        const double share = found.all > 0 ? found.seen / found.all : 1.0;
         seen_ += open.light * share;
         if (partly) variance_ += open.light * open.light * 0.0625;
         for (std::size_t b = 0; share > 0 && b < sums_.size(); ++b)

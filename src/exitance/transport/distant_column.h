@@ -26,7 +26,7 @@ struct SkyEntry {
 };
 
 /// The same for a sky; `bands` [which × bands of the sky] is the irradiance per band. Each receiver
-/// casts four rays into every cell that may bring 16 tolerances, at most, and goes on into the
+/// casts four rays into every cell that may bring up to 8 tolerances, and goes on into the
 /// quarters of cells that it sees partly until they hardly matter: the edges of windows and roofs.
 std::uint64_t compute_sky_column(const RayCaster& caster, const SkySource& sky, double tolerance,
                                  std::uint32_t number, const Receivers& receivers,
