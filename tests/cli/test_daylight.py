@@ -53,14 +53,13 @@ class Daylight(ProgramTest):
                          [{"name": "dull", "factors": {"sky": 0.5, "sun": 0}}])
 
     def test_a_scene_that_is_not_there(self):
-        said = self.fail_with(WRONG_USE, "probe", self.solution, "--points", self.points,
-                              "-o", "-", "--scene", "dul")
-        self.assertIn("did you mean 'dull'?", said)
+        self.refuse(WRONG_USE, "did you mean 'dull'", "probe", self.solution, "--points",
+                    self.points, "-o", "-", "--scene", "dul")
 
     def test_a_wrong_model_is_refused_where_it_stands(self):
         wrong = self.write("wrong.toml", PROJECT.replace("uniform", "unifrom"))
-        said = self.fail_with(BAD_INPUT, "solve", wrong, "-o", self.folder / "wrong.glb")
-        self.assertIn("wrong.toml:9:9: model: found", said)
+        self.refuse(BAD_INPUT, r"wrong\.toml:9:9: model: found", "solve", wrong, "-o",
+                    self.folder / "wrong.glb")
 
 
 if __name__ == "__main__":
