@@ -15,6 +15,7 @@
 #include "commands.h"
 #include "exitance/run/atomic_file.h"
 #include "exitance/solution/file.h"
+#include "exitance/solution/light_scenes.h"
 #include "options_cli.h"
 #include "output_path.h"
 #include "points_csv.h"
@@ -56,6 +57,8 @@ class ProbeCommand {
             ->required();
         command.add_flag("--groups", per_group_,
                          "also E_<group>_<band> of each light group by itself, at weight 1");
+        command.add_option("--scene", scene_, "weigh the groups as this scene of the project says")
+            ->type_name("name");
         command.footer(
             "Irradiance is in the unit of the solution, on the side of the normal, summed over "
             "the\n"
@@ -72,7 +75,8 @@ class ProbeCommand {
             require_output(output_, points_, {".csv"});
             require_output(output_, solution_, {".csv"});
         }
-        const Solution solution = read_solution(solution_);
+        Solution solution = read_solution(solution_);
+        if (scene_) apply_light_scene(solution, *scene_);
         const PointTable table = read_table();
         const std::vector<double> E = probe(solution, table.points, options_);
         const std::vector<std::string> names = column_names(solution);
@@ -100,6 +104,7 @@ class ProbeCommand {
     GivenOptions given_;
     std::filesystem::path solution_, points_, output_;
     bool per_group_ = false;
+    std::optional<std::string> scene_;
 
     PointTable read_table() const {
         if (points_ == "-") return read_points(std::cin, "standard input");

@@ -15,6 +15,7 @@
 #include "exitance/run/error.h"
 #include "exitance/scene/read.h"
 #include "exitance/solution/file.h"
+#include "exitance/solution/light_scenes.h"
 #include "interrupt.h"
 #include "options_cli.h"
 #include "output_path.h"
@@ -49,6 +50,9 @@ class RenderCommand {
             ->type_name("name=weight")
             ->allow_extra_args(false)
             ->group("Picture");
+        command.add_option("--scene", scene_, "weigh the groups as this scene of the project says")
+            ->type_name("name")
+            ->group("Picture");
         command
             .add_option("--range", range_,
                         "values at the ends of the false colours (default: 0 and what 99 % of the "
@@ -82,8 +86,9 @@ class RenderCommand {
             throw Error(Fault::wrong_use, "--range needs --false-colour");
         if (options_.size) parse_size(*options_.size);
 
-        const Solution solution =
+        Solution solution =
             is_solution(input_) ? read_solution(input_) : lit(read_scene(input_, read_options_));
+        if (scene_) apply_light_scene(solution, *scene_);
         const Surfaces surfaces(solution, Backs::open);
         const Camera camera = chosen_camera(surfaces);
         const ImageSize size = size_of_picture(options_, camera);
@@ -99,7 +104,7 @@ class RenderCommand {
     GivenOptions reading_;
     std::filesystem::path input_, output_;
     Reporting reporting_;
-    std::optional<std::string> camera_;
+    std::optional<std::string> camera_, scene_;
     std::vector<double> eye_, look_at_, up_, range_;
     std::optional<double> fov_;
     std::vector<std::string> weights_;

@@ -87,6 +87,11 @@ class Pages(unittest.TestCase):
         self.assertEqual(DOCUMENTS[ROOT / "docs/manual.md"], program("manual"),
                          "run: build/bin/exitance manual > docs/manual.md")
 
+    def test_schema_is_what_the_program_prints(self):
+        self.assertEqual((ROOT / "docs/project.schema.json").read_text(encoding="utf-8"),
+                         program("manual", "--schema"),
+                         "run: build/bin/exitance manual --schema > docs/project.schema.json")
+
     def test_manual_and_help_name_the_same_options(self):
         for section in program("manual").split("\n## exitance ")[1:]:
             command = section.split("\n")[0]

@@ -25,11 +25,13 @@ constexpr std::uint32_t stratified_bounces = 2;
 
 RayCaster make_caster(const Scene& scene) {
     std::vector<RayCaster::Face> faces;
+    std::vector<float> transmittance;
     for (const Polygon& polygon : scene.polygons) {
         const auto& c = polygon.corners;
         faces.push_back({c[0], c[1], c[2], polygon.size() == 4 ? c[3] : c[2]});
+        transmittance.push_back(static_cast<float>(scene.material(polygon).clear_transmittance()));
     }
-    return RayCaster(scene.points, faces);
+    return RayCaster(scene.points, faces, {}, std::move(transmittance));
 }
 
 std::vector<std::array<std::uint32_t, 2>> sobol_table(std::uint32_t count) {
@@ -134,6 +136,48 @@ PathTracer::PathTracer(const Scene& scene, Grouping grouping)
     for (Face& face : faces_)
         if (face.density > 0) face.density /= flux;
     add_lamps(scene);
+    distant_ = scene.distant;
+    for (const Material& material : materials_)
+        glass_ = glass_ || material.clear_transmittance() > 0;
+}
+
+/// What the glass between two places lets through, if nothing else is there.
+double PathTracer::through(const Vec3& from, const Vec3& way, double far) const {
+    double share = 1, near = 0;
+    for (int pane = 0; pane < 64; ++pane) {
+        const auto hit = caster_.closest(from, way, near, far);
+        if (!hit) return share;
+        const double passes = materials_[faces_[hit->primitive].material].clear_transmittance();
+        if (!(passes > 0)) return 0;
+        share *= passes;
+        near = double(hit->distance) + caster_.clearance() / length(way);
+    }
+    return 0;
+}
+
+/// One direction within every sun per path.
+void PathTracer::sample_suns(Walk& walk, std::span<double> sums) const {
+    for (std::size_t l = 0; l < distant_.size(); ++l) {
+        const DistantLight& sun = distant_[l];
+        if (sun.kind != DistantLight::Kind::disc) continue;
+        const Frame frame(sun.direction);
+        for (std::size_t lane = 0; lane < width; ++lane) {
+            if (!(walk.active >> lane & 1u)) continue;
+            const UnitSquare u = walk.numbers(Walk::lamp, lane);
+            const double r = std::tan(sun.diameter / 2) * std::sqrt(u[0]);
+            const Vec3 d =
+                normalized(frame.to_world({r * std::cos(2 * std::numbers::pi * u[1]),
+                                           r * std::sin(2 * std::numbers::pi * u[1]), 1}));
+            const double facing = dot(d, walk.normal[lane]);
+            if (!(facing > 0)) continue;
+            ++walk.rays;
+            const double share =
+                through(walk.position[lane], d, std::numeric_limits<double>::infinity());
+            for (std::size_t b = 0; b < bands_ && share > 0; ++b)
+                sums[groups_.group_of_distant[l] * bands_ + b] +=
+                    walk.weight_of(lane)[b] * sun.irradiance * facing * share * sun.colour[b];
+        }
+    }
 }
 
 void PathTracer::add_lamps(const Scene& scene) {
@@ -225,10 +269,18 @@ void PathTracer::sample_lamps(Walk& walk, std::span<double> sums) const {
     }
     walk.rays += static_cast<std::uint64_t>(std::popcount(rays.active));
     const std::uint32_t seen = rays.active & ~caster_.occluded(rays);
+    std::array<double, width> panes;
+    panes.fill(1);
+    for (std::size_t lane = 0; glass_ && lane < width; ++lane)
+        if (seen >> lane & 1u)
+            panes[lane] = through(walk.position[lane],
+                                  {double(rays.direction_x[lane]), double(rays.direction_y[lane]),
+                                   double(rays.direction_z[lane])},
+                                  1);
     for (std::size_t lane = 0; lane < width; ++lane)
         for (std::size_t b = 0; b < bands_ && (seen >> lane & 1u); ++b)
-            sums[lamps[lane]->group * bands_ + b] +=
-                walk.weight_of(lane)[b] * light[lane] * lamps[lane]->luminaire.colour[b];
+            sums[lamps[lane]->group * bands_ + b] += walk.weight_of(lane)[b] * light[lane] *
+                                                     lamps[lane]->luminaire.colour[b] * panes[lane];
 }
 
 /// Adds weight · M · k / (p + k): with k = cosθ cosθ' / π r² the density per emitter area of
@@ -287,8 +339,10 @@ void PathTracer::sample_lights(Walk& walk, std::span<double> sums) const {
     for (std::size_t lane = 0; lane < width; ++lane)
         if (seen >> lane & 1u) {
             // A sample of the lights stands for 1/p, one of the directions for 1/k.
-            add_emission(*faces[lane], fronts[lane], facing[lane], squared[lane],
-                         walk.weight_of(lane), sums);
+            std::vector<double> weight(walk.weight_of(lane).begin(), walk.weight_of(lane).end());
+            const Vec3 way(rays.direction_x[lane], rays.direction_y[lane], rays.direction_z[lane]);
+            for (double& w : weight) w *= glass_ ? through(walk.position[lane], way, 1) : 1;
+            add_emission(*faces[lane], fronts[lane], facing[lane], squared[lane], weight, sums);
         }
 }
 
@@ -310,11 +364,37 @@ void PathTracer::step(Walk& walk, std::span<double> sums) const {
     walk.rays += static_cast<std::uint64_t>(std::popcount(rays.active));
     RayCaster::PacketHits hits;
     caster_.closest(rays, hits);
+    for (std::size_t lane = 0; glass_ && lane < width; ++lane) {
+        double near = 0;
+        while ((rays.active >> lane & 1u) && hits.primitive[lane] != 0xffffffffu) {
+            const Material& pane = materials_[faces_[hits.primitive[lane]].material];
+            if (!(pane.clear_transmittance() > 0)) break;
+            for (double& w : walk.weight_of(lane)) w *= pane.clear_transmittance();
+            near = double(hits.distance[lane]) + caster_.clearance();
+            const auto next = caster_.closest(walk.position[lane], directions[lane], near,
+                                              std::numeric_limits<double>::infinity());
+            hits.primitive[lane] = next ? next->primitive : 0xffffffffu;
+            if (!next) break;
+            hits.distance[lane] = next->distance;
+            const bool front = dot(Vec3(next->geometric_normal), directions[lane]) < 0;
+            hits.front = (hits.front & ~(1u << lane)) | (front ? 1u << lane : 0u);
+        }
+    }
 
     ++walk.bounce;
     walk.active = 0;
     for (std::size_t lane = 0; lane < width; ++lane) {
-        if (!(rays.active >> lane & 1u) || hits.primitive[lane] == 0xffffffffu) continue;
+        if (!(rays.active >> lane & 1u)) continue;
+        if (hits.primitive[lane] == 0xffffffffu) {
+            for (std::size_t l = 0; l < distant_.size(); ++l) {
+                if (distant_[l].kind != DistantLight::Kind::sky) continue;
+                const Spectrum L = distant_[l].radiance(directions[lane]);
+                for (std::size_t b = 0; b < bands_; ++b)
+                    sums[groups_.group_of_distant[l] * bands_ + b] +=
+                        walk.weight_of(lane)[b] * std::numbers::pi * L[b];
+            }
+            continue;
+        }
         const Face& face = faces_[hits.primitive[lane]];
         const Material& material = materials_[face.material];
         const bool front = hits.front >> lane & 1u;
@@ -380,6 +460,7 @@ Estimate PathTracer::irradiance(std::span<const Receiver> receivers, const Effor
                     while (walk.active) {
                         sample_lights(walk, replicate);
                         sample_lamps(walk, replicate);
+                        sample_suns(walk, replicate);
                         step(walk, replicate);
                     }
                 }

@@ -55,7 +55,8 @@ struct Estimate {
 
 /// Unbiased: cosine-distributed paths, at every vertex one point of an emitter chosen by flux,
 /// both combined by the balance heuristic (Veach & Guibas 1995), and one of a luminaire, which no
-/// direction hits; Russian roulette for faint paths.
+/// direction hits, and of every sun; sky where a path leaves; clear glass weakens what goes
+/// straight through it, and reflects nothing; Russian roulette for faint paths.
 /// One-sided surfaces reflect and emit from the front only; their backs are black. The result does
 /// not depend on the number of threads.
 class PathTracer {
@@ -93,6 +94,8 @@ class PathTracer {
     struct Walk;
 
     void add_lamps(const Scene& scene);
+    void sample_suns(Walk& walk, std::span<double> sums) const;
+    double through(const Vec3& from, const Vec3& way, double far) const;
     void sample_lamps(Walk& walk, std::span<double> sums) const;
     void sample_lights(Walk& walk, std::span<double> sums) const;
     void step(Walk& walk, std::span<double> sums) const;
@@ -105,6 +108,8 @@ class PathTracer {
     std::vector<Face> faces_;
     std::vector<Emitter> emitters_;
     std::vector<Lamp> lamps_;
+    std::vector<DistantLight> distant_;
+    bool glass_ = false;
     RayCaster caster_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/visibility/beyond_glass.h"
 
 namespace exitance {
 
@@ -45,8 +46,14 @@ std::vector<SamplePattern> filter_patterns(std::uint32_t samples, std::uint64_t 
 class PacketCaster {
   public:
     PacketCaster(const Surfaces& surfaces, const CameraRays& camera,
-                 const std::function<Vec3f(const ViewHit&)>& shade, Raycast& out, float weight)
-        : surfaces_(surfaces), camera_(camera), shade_(shade), out_(out), weight_(weight) {
+                 const std::function<Vec3f(const ViewHit&)>& shade,
+                 const std::function<Vec3f(const Vec3&)>& beyond, Raycast& out, float weight)
+        : surfaces_(surfaces),
+          camera_(camera),
+          shade_(shade),
+          beyond_(beyond),
+          out_(out),
+          weight_(weight) {
         const Vec3f eye(camera.eye() - surfaces.caster().middle());
         rays_.origin_x.fill(eye.x), rays_.origin_y.fill(eye.y), rays_.origin_z.fill(eye.z);
         rays_.near.fill(0.0f), rays_.far.fill(std::numeric_limits<float>::infinity());
@@ -65,12 +72,25 @@ class PacketCaster {
 
     void cast() {
         rays_.active = (1u << filled_) - 1;
-        surfaces_.caster().closest(rays_, hits_);
-        for (std::size_t i = 0; i < filled_; ++i) {
-            if (!(hits_.front >> i & 1u)) continue;
-            const ViewHit hit{Surfaces::place(hits_.primitive[i], hits_.u[i], hits_.v[i]),
+        std::array<float, RayPacket::width> weight;
+        weight.fill(weight_);
+        const auto show = [&](std::size_t i, const RayCaster::PacketHits& hits) {
+            const ViewHit hit{Surfaces::place(hits.primitive[i], hits.u[i], hits.v[i]),
                               position_[i][0], position_[i][1]};
-            out_.image.pixels[pixel_[i]] += shade_(hit) * weight_;
+            out_.image.pixels[pixel_[i]] += shade_(hit) * weight[i];
+        };
+        closest_beyond_glass(surfaces_.caster(), rays_, hits_, [&](auto i, const auto& hits) {
+            show(i, hits);
+            weight[i] *= surfaces_.caster().transmittance(hits.primitive[i]);
+        });
+        for (std::size_t i = 0; i < filled_; ++i) {
+            if (hits_.primitive[i] == 0xffffffffu && beyond_)
+                out_.image.pixels[pixel_[i]] +=
+                    beyond_({double(rays_.direction_x[i]), double(rays_.direction_y[i]),
+                             double(rays_.direction_z[i])}) *
+                    weight[i];
+            if (!(hits_.front >> i & 1u)) continue;
+            show(i, hits_);
             out_.coverage[pixel_[i]] += weight_;
         }
         filled_ = 0;
@@ -80,6 +100,7 @@ class PacketCaster {
     const Surfaces& surfaces_;
     const CameraRays& camera_;
     const std::function<Vec3f(const ViewHit&)>& shade_;
+    const std::function<Vec3f(const Vec3&)>& beyond_;
     Raycast& out_;
     float weight_;
     RayPacket rays_;
@@ -93,7 +114,8 @@ class PacketCaster {
 
 Raycast raycast(const Surfaces& surfaces, const CameraRays& camera, std::uint32_t width,
                 std::uint32_t height, std::uint32_t samples, std::uint64_t seed,
-                const std::function<Vec3f(const ViewHit&)>& shade) {
+                const std::function<Vec3f(const ViewHit&)>& shade,
+                const std::function<Vec3f(const Vec3&)>& beyond) {
     Raycast out{Image(width, height), std::vector<float>(std::size_t{width} * height, 0.0f)};
     const std::vector<SamplePattern> patterns = filter_patterns(samples, seed);
     constexpr std::uint32_t tile = 16;
@@ -101,7 +123,8 @@ Raycast raycast(const Surfaces& surfaces, const CameraRays& camera, std::uint32_
     parallel_for(
         std::size_t{across} * down,
         [&](std::size_t t) {
-            PacketCaster caster(surfaces, camera, shade, out, 1.0f / static_cast<float>(samples));
+            PacketCaster caster(surfaces, camera, shade, beyond, out,
+                                1.0f / static_cast<float>(samples));
             const auto left = static_cast<std::uint32_t>(t % across) * tile,
                        top = static_cast<std::uint32_t>(t / across) * tile;
             for (std::uint32_t y = top; y < std::min(height, top + tile); ++y)

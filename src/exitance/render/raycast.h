@@ -25,9 +25,12 @@ struct Raycast {
 
 /// Casts `samples` rays per pixel, spread by a Gaussian filter; each that hits brings
 /// `shade(hit)`, called from many threads at once. `surfaces` made with Backs::open: backs do not
-/// show. The same arguments give the same image on any number of threads.
+/// show. Rays that leave the scene bring `beyond(direction)`, not of unit length, if there is such
+/// a function; they do not count as covered. The same arguments give the same image on any number
+/// of threads.
 Raycast raycast(const Surfaces& surfaces, const CameraRays& camera, std::uint32_t width,
                 std::uint32_t height, std::uint32_t samples, std::uint64_t seed,
-                const std::function<Vec3f(const ViewHit&)>& shade);
+                const std::function<Vec3f(const ViewHit&)>& shade,
+                const std::function<Vec3f(const Vec3&)>& beyond = {});
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <vector>
 
@@ -113,6 +114,33 @@ class WeightedLight {
     Spectrum luminance_;
 };
 
+/// The sky behind everything, with the weights of the light groups; nothing if there is none. Suns
+/// are not drawn.
+std::function<Vec3f(const Vec3&)> sky_behind(const Surfaces& surfaces,
+                                             const RenderOptions& options) {
+    const Solution& s = surfaces.solution();
+    struct WeightedSky {
+        const DistantLight* light;
+        double weight;
+    };
+    std::vector<WeightedSky> skies;
+    const std::vector<double> weights = group_weights(s, options);
+    for (const SolutionDistantLight& placed : s.distant)
+        if (placed.light.kind == DistantLight::Kind::sky)
+            skies.push_back({&placed.light, weights[placed.group]});
+    if (skies.empty()) return {};
+    return [skies](const Vec3& way) {
+        const Vec3 direction = normalized(way);
+        Vec3 sum;
+        for (const WeightedSky& sky : skies) {
+            const Spectrum L = sky.light->radiance(direction);
+            const double grey = luminance(L);
+            sum += (L.size() == 3 ? Vec3{L[0], L[1], L[2]} : Vec3{grey, grey, grey}) * sky.weight;
+        }
+        return Vec3f(sum);
+    };
+}
+
 /// Up to the value that 99 % of what is seen stays below, rounded up to two digits.
 std::array<double, 2> automatic_range(const Raycast& values) {
     std::vector<float> seen;
@@ -141,10 +169,14 @@ Image tone_mapped(const Surfaces& surfaces, const CameraRays& camera, ImageSize 
                                        : automatic_exposure(metered.image, metered.coverage);
     const double white = white_of(metered.image, exposure);
     const ToneCurve curve = tone_curve(options.tone);
-    return raycast(surfaces, camera, size.width, size.height, samples, options.seed,
-                   [&](const ViewHit& hit) {
-                       return toned(radiance(hit) * static_cast<float>(exposure), curve, white);
-                   })
+    const auto tone = [&](const Vec3f& seen) {
+        return toned(seen * static_cast<float>(exposure), curve, white);
+    };
+    std::function<Vec3f(const Vec3&)> sky = sky_behind(surfaces, options);
+    if (sky) sky = [&tone, sky](const Vec3& way) { return tone(sky(way)); };
+    return raycast(
+               surfaces, camera, size.width, size.height, samples, options.seed,
+               [&](const ViewHit& hit) { return tone(radiance(hit)); }, sky)
         .image;
 }
 
@@ -194,9 +226,10 @@ Image render_radiance(const Surfaces& surfaces, const Camera& camera, ImageSize 
                       const RenderOptions& options) {
     const CameraRays rays(camera, size.width, size.height);
     const WeightedLight light(surfaces, options);
-    return raycast(surfaces, rays, size.width, size.height,
-                   static_cast<std::uint32_t>(options.samples), options.seed,
-                   [&](const ViewHit& hit) { return light.radiance(hit.place); })
+    return raycast(
+               surfaces, rays, size.width, size.height, static_cast<std::uint32_t>(options.samples),
+               options.seed, [&](const ViewHit& hit) { return light.radiance(hit.place); },
+               sky_behind(surfaces, options))
         .image;
 }
 

@@ -22,7 +22,9 @@ std::string group_name(const Scene& scene, const Surface& surface, Grouping grou
     return "all";
 }
 
-std::string group_name(const Luminaire& luminaire, Grouping grouping) {
+// Luminaires, sun and sky.
+template <class Light>
+std::string name_of_light(const Light& luminaire, Grouping grouping) {
     switch (grouping) {
         case Grouping::none:
             return "all";
@@ -50,7 +52,9 @@ LightGroups make_groups(const Scene& scene, Grouping grouping) {
         if (scene.materials[scene.surfaces[s].material].emits())
             out.group_of_surface[s] = index_of(group_name(scene, scene.surfaces[s], grouping));
     for (const Luminaire& luminaire : scene.luminaires)
-        out.group_of_luminaire.push_back(index_of(group_name(luminaire, grouping)));
+        out.group_of_luminaire.push_back(index_of(name_of_light(luminaire, grouping)));
+    for (const DistantLight& light : scene.distant)
+        out.group_of_distant.push_back(index_of(name_of_light(light, grouping)));
     if (out.groups.empty()) out.groups.push_back({"all", 1.0});
     return out;
 }

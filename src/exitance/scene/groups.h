@@ -28,9 +28,10 @@ struct LightGroups {
     std::vector<LightGroup> groups;                 ///< at least one
     std::vector<std::uint32_t> group_of_surface;    ///< per Scene surface; 0 for what does not emit
     std::vector<std::uint32_t> group_of_luminaire;  ///< per Scene luminaire
+    std::vector<std::uint32_t> group_of_distant;    ///< per Scene distant light
 };
 
-/// Groups in order of first appearance among the surfaces, then the luminaires.
+/// Groups in order of first appearance among the surfaces, the luminaires, sun and sky.
 LightGroups make_groups(const Scene& scene, Grouping grouping);
 
 }  // namespace exitance

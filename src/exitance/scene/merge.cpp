@@ -19,6 +19,7 @@ void convert_emission(Scene& part, Quantity wanted) {
     for (const Material& material : part.materials)
         if (!first && material.emits()) first = &material.place;
     if (!first && !part.luminaires.empty()) first = &part.luminaires.front().place;
+    if (!first && !part.distant.empty()) first = &part.distant.front().place;
     if (!first || part.quantity == wanted) return;
     double factor = 1;
     if (part.quantity == Quantity::photometric && wanted == Quantity::radiometric)
@@ -37,6 +38,7 @@ void convert_emission(Scene& part, Quantity wanted) {
         for (double& e : material.exitance_pattern.factor) e *= factor;
     }
     for (Luminaire& luminaire : part.luminaires) luminaire.multiplier *= factor;
+    for (DistantLight& light : part.distant) light.irradiance *= factor, light.strength *= factor;
 }
 
 // Turned and moved; what shines keeps its own size and flux.
@@ -47,6 +49,23 @@ void place(Luminaire& luminaire, const Transform& placing) {
     luminaire.nadir = normalized(nadir - luminaire.c0 * dot(nadir, luminaire.c0));
     if (placing.determinant() < 0)
         luminaire.photometry = std::make_shared<const Photometry>(mirrored(*luminaire.photometry));
+}
+
+void place(DistantLight& light, const Transform& placing) {
+    const auto turned = [&](const Vec3& v) { return normalized(placing.vector(v)); };
+    light.direction = turned(light.direction);
+    light.model.sun = turned(light.model.sun);
+    if (!light.map) return;
+    // What the cells of the new axes look at in the old ones.
+    RadianceMap map = *light.map;
+    const Vec3 x = turned({1, 0, 0}), y = turned({0, 1, 0}), z = turned({0, 0, 1});
+    const std::uint32_t n = map.side();
+    for (std::uint32_t i = 0; i < 2 * n * n; ++i) {
+        const Vec3 d = direction_of({i >= n * n, (i % n + 0.5) / n, (i / n % n + 0.5) / n});
+        const auto rgb = light.map->radiance({dot(d, x), dot(d, y), dot(d, z)});
+        for (std::size_t b = 0; b < 3; ++b) map.cells[3 * i + b] = static_cast<float>(rgb[b]);
+    }
+    light.map = std::make_shared<const RadianceMap>(std::move(map));
 }
 
 template <class T>
@@ -94,10 +113,13 @@ void merge(Scene& scene, Scene part, const Transform& placing) {
     }
     append(scene.form_factors.surfaces, part.form_factors.surfaces);
     append(scene.form_factors.options, part.form_factors.options);
+    for (DistantLight& light : part.distant) place(light, placing);
     append(scene.polygons, part.polygons);
     append(scene.surfaces, part.surfaces);
     append(scene.materials, part.materials);
     append(scene.luminaires, part.luminaires);
+    append(scene.distant, part.distant);
+    append(scene.light_scenes, part.light_scenes);
     append(scene.cameras, part.cameras);
     append(scene.grids, part.grids);
     append(scene.settings, part.settings);

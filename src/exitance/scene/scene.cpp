@@ -47,6 +47,10 @@ bool Material::emits() const {
     return any_positive(exitance);
 }
 
+double Material::clear_transmittance() const {
+    return transmittance.empty() ? 0.0 : std::clamp(luminance(transmittance), 0.0, 1.0);
+}
+
 bool Material::transmits() const {
     return any_positive(transmittance) || any_positive(diffuse_transmittance);
 }

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +13,7 @@
 #include "exitance/math/box.h"
 #include "exitance/math/vector.h"
 #include "exitance/run/error.h"
+#include "exitance/scene/distant_light.h"
 #include "exitance/scene/form_factor_setup.h"
 #include "exitance/scene/luminaire.h"
 #include "exitance/scene/spectrum.h"
@@ -55,6 +57,9 @@ struct Material {
     bool emits() const;
     bool transmits() const;
     bool patterned() const { return reflectance_pattern || exitance_pattern; }
+    /// Share of light that glass lets straight through; 0 for what blocks it. One number, weighted
+    /// by luminance: rays do not carry colours.
+    double clear_transmittance() const;
 };
 
 /// A named set of polygons of one material: a glTF primitive, an OBJ group, a luminaire.
@@ -112,6 +117,13 @@ struct Setting {
     Place place;
 };
 
+/// Factors of light groups under a name, "morning"; groups that it does not name keep their own.
+struct LightScene {
+    std::string name;
+    std::map<std::string, double> factors;
+    Place place{};
+};
+
 struct Scene {
     std::string title;
     Quantity quantity = Quantity::unitless;
@@ -126,6 +138,8 @@ struct Scene {
     std::vector<Surface> surfaces;
     std::vector<Material> materials;
     std::vector<Luminaire> luminaires;  ///< lamps without geometry
+    std::vector<DistantLight> distant;  ///< sun and sky
+    std::vector<LightScene> light_scenes;
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;
     FormFactorSetup form_factors;   ///< from a View3D file

@@ -164,7 +164,9 @@ std::vector<Problem> validate(const Scene& scene) {
     const auto shines = [](const Luminaire& l) { return l.flux() > 0; };
     if (std::none_of(scene.polygons.begin(), scene.polygons.end(),
                      [&](const Polygon& p) { return scene.material(p).emits(); }) &&
-        std::none_of(scene.luminaires.begin(), scene.luminaires.end(), shines))
+        std::none_of(scene.luminaires.begin(), scene.luminaires.end(), shines) &&
+        std::none_of(scene.distant.begin(), scene.distant.end(),
+                     [](const DistantLight& l) { return l.shines(); }))
         tell(problems, {}, "nothing emits light: the scene stays dark");
     if (!finite) return problems;
     check_luminaires(scene, problems);

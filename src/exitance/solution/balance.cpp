@@ -11,6 +11,7 @@
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
 #include "exitance/solution/luminaire_losses.h"
+#include "exitance/visibility/beyond_glass.h"
 
 namespace exitance {
 
@@ -93,13 +94,22 @@ Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
             }
             rays.active = 0xffffu;
             RayCaster::PacketHits hits;
-            radiosity.caster.closest(rays, hits);
+            std::array<double, RayPacket::width> flux;
+            flux.fill(each);
+            const auto is_black = [&](std::size_t k, const RayCaster::PacketHits& met) {
+                return !covered[k] && !(met.front >> k & 1u) &&
+                       !radiosity.two_sided()[met.primitive[k]];
+            };
+            closest_beyond_glass(radiosity.caster, rays, hits, [&](auto k, const auto& met) {
+                const auto share = double(radiosity.caster.transmittance(met.primitive[k]));
+                if (is_black(k, met)) lost.behind += flux[k] * (1 - share);
+                flux[k] *= share;
+            });
             for (std::size_t k = 0; k < RayPacket::width; ++k) {
                 if (hits.primitive[k] == 0xffffffffu)
-                    lost.escaped += each;
-                else if (!covered[k] && !(hits.front >> k & 1u) &&
-                         !radiosity.two_sided()[hits.primitive[k]])
-                    lost.behind += each;
+                    lost.escaped += flux[k];
+                else if (is_black(k, hits))
+                    lost.behind += flux[k];
             }
         }
         return lost;
@@ -124,13 +134,14 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
     for (const Patch& patch : mesh.patches()) {
         const Face& face = mesh[patch.face];
         const auto E = radiosity.emitted(face);
+        const float tau = radiosity.caster.transmittance(face.polygon.value);
         mesh.for_leaves(patch.root, [&](ElementId id) {
             const Element& element = mesh[id];
             const auto rho = radiosity.rho(id);
             radiosity.mean_irradiance(id, absorbed);
             for (std::size_t c = 0; c < columns.stride; ++c) {
                 reflected[c] = rho[c] * absorbed[c] - radiosity.shot[id][c];
-                absorbed[c] *= 1.0f - rho[c];
+                absorbed[c] *= 1.0f - rho[c] - tau;
             }
             const auto area = static_cast<double>(element.area);
             const auto open = static_cast<double>(radiosity.open_share(element));

@@ -289,6 +289,9 @@ Solution extract_solution(const Radiosity& radiosity) {
     out.materials = scene.materials;
     for (std::size_t l = 0; l < scene.luminaires.size(); ++l)
         out.luminaires.push_back({scene.luminaires[l], radiosity.groups.group_of_luminaire[l]});
+    for (std::size_t l = 0; l < scene.distant.size(); ++l)
+        out.distant.push_back({scene.distant[l], radiosity.groups.group_of_distant[l]});
+    out.light_scenes = scene.light_scenes;
     out.cameras = scene.cameras;
     out.grids = scene.grids;
     out.scene_digest = digest(scene);
@@ -332,6 +335,20 @@ std::string digest(const Scene& scene) {
         add(static_cast<std::uint64_t>(opening.shape));
         number(opening.size.x), number(opening.size.y), number(opening.size.z);
     }
+    for (const DistantLight& light : scene.distant) {
+        add(static_cast<std::uint64_t>(light.kind));
+        for (const double c : light.colour) number(c);
+        const SkyModel& m = light.model;
+        for (const Vec3& v : {light.direction, m.sun}) number(v.x), number(v.y), number(v.z);
+        for (const double x : {light.diameter, light.irradiance, light.ground, light.strength, m.a,
+                               m.b, m.c, m.d, m.e, m.circumsolar_offset, m.scale})
+            number(x);
+        add(m.traditional_overcast);
+        if (!light.map) continue;
+        for (const float cell : light.map->cells) number(double(cell));
+    }
+    for (const Material& material : scene.materials)
+        if (material.clear_transmittance() > 0) number(material.clear_transmittance());
     return fmt::format("{:016x}", h);
 }
 

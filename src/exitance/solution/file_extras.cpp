@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "exitance/solution/file_distant.h"
 #include "exitance/solution/file_layout.h"
 #include "exitance/solution/file_luminaires.h"
 
@@ -79,6 +80,7 @@ json extras_of(const Material& material) {
              {"exitance", material.exitance},
              {"two_sided", material.two_sided}};
     if (!material.group.empty()) out["group"] = material.group;
+    if (material.clear_transmittance() > 0) out["transmittance"] = material.transmittance;
     if (material.reflectance_file) out["reflectance_file"] = *material.reflectance_file;
     if (material.reflectance_pattern)
         out["reflectance_pattern"] = {{"factor", material.reflectance_pattern.factor},
@@ -119,6 +121,13 @@ json extras_of(const Solution& s) {
                         {"confidence", s.error->confidence},
                         {"points", s.error->points}};
     add_luminaires(out, s);
+    add_distant_lights(out, s);
+    if (!s.light_scenes.empty()) {
+        json scenes = json::array();
+        for (const LightScene& scene : s.light_scenes)
+            scenes.push_back({{"name", scene.name}, {"factors", scene.factors}});
+        out["scenes"] = std::move(scenes);
+    }
     return out;
 }
 
@@ -236,6 +245,15 @@ void read_extras(const Node& extras, Solution& s) {
     for (std::size_t i = 0; i < cameras.size(); ++i) s.cameras.push_back(read_camera(cameras[i]));
     for (std::size_t i = 0; i < grids.size(); ++i) s.grids.push_back(read_grid(grids[i]));
     read_luminaires(extras, s);
+    read_distant_lights(extras, s);
+    for (std::size_t i = 0; extras.has("scenes") && i < extras["scenes"].size(); ++i) {
+        const Node node = extras["scenes"][i], factors = node["factors"];
+        LightScene scene;
+        scene.name = node["name"].text();
+        for (const std::string& group : factors.keys())
+            scene.factors[group] = factors[group].number_within(-1e9, 1e9);
+        s.light_scenes.push_back(std::move(scene));
+    }
 }
 
 Material read_material(const Node& node, std::size_t bands) {
@@ -245,6 +263,8 @@ Material read_material(const Node& node, std::size_t bands) {
     material.reflectance = extras["reflectance"].spectrum(bands, 1);
     material.exitance = extras["exitance"].spectrum(bands, std::numeric_limits<double>::infinity());
     material.two_sided = extras["two_sided"].flag();
+    if (extras.has("transmittance"))
+        material.transmittance = extras["transmittance"].spectrum(bands, 1);
     if (extras.has("group")) material.group = extras["group"].text();
     if (extras.has("reflectance_file")) {
         const double number = extras["reflectance_file"].number_within(-1e9, 1e9);

@@ -12,7 +12,9 @@
 #include "exitance/math/warp.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/transport/distant_column.h"
 #include "exitance/transport/luminaire_column.h"
+#include "exitance/visibility/beyond_glass.h"
 #include "exitance/visibility/visible_fraction.h"
 
 namespace exitance {
@@ -51,6 +53,9 @@ class Gatherer {
           options_(options) {
         for (const SolutionLuminaire& placed : s_.luminaires)
             luminaires_.emplace_back(placed.luminaire);
+        for (std::uint32_t l = 0; l < s_.distant.size(); ++l)
+            if (s_.distant[l].light.kind == DistantLight::Kind::sky)
+                skies_.emplace_back(l, s_.distant[l].light);
     }
 
     void block(std::size_t begin, std::size_t end) const {
@@ -67,6 +72,7 @@ class Gatherer {
     std::span<double> out_;
     const GatherOptions& options_;
     std::vector<LuminaireSource> luminaires_;
+    std::vector<std::pair<std::uint32_t, SkySource>> skies_;
 
     std::span<double> row(std::size_t point) const {
         return out_.subspan(point * s_.columns(), s_.columns());
@@ -84,6 +90,8 @@ class Gatherer {
         std::vector<std::uint32_t> order(n);
         std::iota(order.begin(), order.end(), 0u);
         add_luminaires(begin, receivers, order);
+        add_suns(begin, receivers, order);
+        for (const auto& [index, sky] : skies_) add_sky(begin, index, sky, receivers, order);
         ReceiverBlock block;
         block.load(receivers, order.data(), n);
 
@@ -128,11 +136,70 @@ class Gatherer {
         }
     }
 
-    /// Light from luminaire `l` for a colour of 1: all receivers once, and rounds with fresh
-    /// patterns for those that see it partly.
+    void add_suns(std::size_t begin, const Receivers& receivers,
+                  std::span<const std::uint32_t> which) const {
+        const std::size_t bands = s_.bands.size();
+        for (std::size_t l = 0; l < s_.distant.size(); ++l) {
+            const auto& [sun, group] = s_.distant[l];
+            if (sun.kind != DistantLight::Kind::disc) continue;
+            const auto number = static_cast<std::uint32_t>(hash_bits(0x5c1ULL, l));
+            const std::vector<double> light = in_rounds(
+                which, [&](const ColumnOptions& options, std::span<const std::uint32_t> open,
+                           std::span<ColumnEntry> entries) {
+                    compute_sun_column(surfaces_.caster(), sun, all_rays, number, receivers, open,
+                                       options, entries);
+                });
+            for (std::size_t i = 0; i < which.size(); ++i)
+                for (std::size_t b = 0; b < bands; ++b)
+                    row(begin + i)[group * bands + b] += light[i] * sun.colour[b];
+        }
+    }
+
+    /// One round in proportion to the open sky says how much of it comes in; the next is as fine as
+    /// that wants it.
+    void add_sky(std::size_t begin, std::uint32_t index, const SkySource& sky,
+                 const Receivers& receivers, std::span<const std::uint32_t> which) const {
+        const std::size_t bands = s_.bands.size();
+        const std::uint32_t group = s_.distant[index].group;
+        std::vector<float> light(bands);
+        for (std::size_t i = 0; i < which.size(); ++i) {
+            const double open = sky.irradiance(points_[begin + i].normal);
+            if (!(open > 0)) continue;
+            SkyEntry entry;
+            double finest = open / 4096;
+            for (const std::uint64_t round : {0, 1}) {
+                ColumnOptions options;
+                options.seed = hash_bits(options_.seed, index, round);
+                compute_sky_column(surfaces_.caster(), sky, finest, index, receivers,
+                                   which.subspan(i, 1), options, {&entry, 1}, light);
+                finest = std::max(double(entry.received), 1e-3 * open) / options_.emitter_rays;
+            }
+            for (std::size_t b = 0; b < bands; ++b)
+                row(begin + i)[group * bands + b] += double(light[b]);
+        }
+    }
+
+    /// A tolerance that asks for all rays of a round wherever there is a penumbra.
+    static constexpr double all_rays = 1e-30;
+
+    /// Light from luminaire `l` for a colour of 1.
     std::vector<double> received_light(const LuminaireSource& source, std::uint32_t l,
                                        const Receivers& receivers,
                                        std::span<const std::uint32_t> which) const {
+        const auto number = static_cast<std::uint32_t>(hash_bits(0x1abULL, l));
+        return in_rounds(which,
+                         [&](const ColumnOptions& options, std::span<const std::uint32_t> open,
+                             std::span<ColumnEntry> entries) {
+                             compute_luminaire_column(surfaces_.caster(), source, all_rays, number,
+                                                      receivers, open, options, entries);
+                         });
+    }
+
+    /// Light of `column`: all receivers once, and rounds with fresh patterns for those that see its
+    /// source partly.
+    template <class Column>
+    std::vector<double> in_rounds(std::span<const std::uint32_t> which,
+                                  const Column& column) const {
         constexpr std::uint32_t rays_of_round = 256;
         ColumnOptions options;
         std::vector<ColumnEntry> entries(which.size());
@@ -140,14 +207,10 @@ class Gatherer {
         std::vector<std::uint32_t> open(which.begin(), which.end()), partly;
         const std::uint32_t rounds =
             std::max(1u, (options_.emitter_rays + rays_of_round - 1) / rays_of_round);
-        // A tolerance that asks for all rays of a round wherever there is a penumbra.
-        constexpr double tolerance = 1e-30;
         for (std::uint32_t round = 0; round < rounds && !open.empty(); ++round) {
             options.seed = hash_bits(options_.seed, round);
             entries.resize(open.size());
-            compute_luminaire_column(surfaces_.caster(), source, tolerance,
-                                     static_cast<std::uint32_t>(hash_bits(0x1abULL, l)), receivers,
-                                     open, options, entries);
+            column(options, open, entries);
             partly.clear();
             for (std::size_t i = 0; i < open.size(); ++i) {
                 const bool whole = round == 0 && entries[i].deviation == 0;
@@ -221,15 +284,22 @@ class Gatherer {
                 rays.direction_y[i] = static_cast<float>(direction.y);
                 rays.direction_z[i] = static_cast<float>(direction.z);
             }
-            surfaces_.caster().closest(rays, hits);
-            for (std::size_t i = 0; i < RayPacket::width; ++i) {
-                if (!(hits.front >> i & 1u)) continue;
-                const auto place = Surfaces::place(hits.primitive[i], hits.u[i], hits.v[i]);
+            std::array<double, RayPacket::width> share;
+            share.fill(1);
+            const auto add = [&](std::size_t i, const RayCaster::PacketHits& met) {
+                if (!(met.front >> i & 1u)) return;
+                const auto place = Surfaces::place(met.primitive[i], met.u[i], met.v[i]);
                 surfaces_.irradiance(place, H);
                 Surfaces::PatternHere room;
                 const auto rho = surfaces_.reflectance(place, room);
-                for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += rho[c % rho.size()] * H[c];
-            }
+                for (std::size_t c = 0; c < sum.size(); ++c)
+                    sum[c] += share[i] * rho[c % rho.size()] * H[c];
+            };
+            closest_beyond_glass(surfaces_.caster(), rays, hits, [&](auto i, const auto& met) {
+                add(i, met);
+                share[i] *= double(surfaces_.caster().transmittance(met.primitive[i]));
+            });
+            for (std::size_t i = 0; i < RayPacket::width; ++i) add(i, hits);
         }
         const std::span<double> columns = row(point);
         for (std::size_t c = 0; c < sum.size(); ++c)

@@ -23,10 +23,10 @@ struct GatherOptions {
 };
 
 /// Irradiance at each point, `columns` = points × solution columns [irradiance_unit]. Emission
-/// comes from Solution::emitters by the exact factor, and from its luminaires, times their visible
-/// share; reflected light
-/// from rays over the hemisphere that look B − E up where they hit. Backs of one-sided surfaces
-/// are black (`surfaces` must be made with Backs::black); rays that miss bring nothing.
+/// comes from Solution::emitters by the exact factor, from its luminaires and from sun and sky,
+/// times their visible share; reflected light from rays over the hemisphere that look B − E up
+/// where they hit. Backs of one-sided surfaces are black (`surfaces` must be made with
+/// Backs::black); glass weakens what it lets through.
 void gather(const Surfaces& surfaces, std::span<const GatherPoint> points,
             std::span<double> columns, const GatherOptions& options = {});
 

@@ -8,6 +8,7 @@
 
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/visibility/beyond_glass.h"
 
 namespace exitance {
 
@@ -58,12 +59,19 @@ Lost follow(const Radiosity& radiosity, const LuminaireSource& source, std::size
             }
             p.active = 0xffffu;
             RayCaster::PacketHits hits;
-            radiosity.caster.closest(p, hits);
+            for (const double w : weight) lost.sent += w;
+            const auto is_black = [&](std::size_t k, const RayCaster::PacketHits& met) {
+                return !(met.front >> k & 1u) && !radiosity.two_sided()[met.primitive[k]];
+            };
+            closest_beyond_glass(radiosity.caster, p, hits, [&](auto k, const auto& met) {
+                const auto share = double(radiosity.caster.transmittance(met.primitive[k]));
+                if (is_black(k, met)) lost.behind += weight[k] * (1 - share);
+                weight[k] *= share;
+            });
             for (std::size_t k = 0; k < RayPacket::width; ++k) {
-                lost.sent += weight[k];
                 if (hits.primitive[k] == 0xffffffffu)
                     lost.escaped += weight[k];
-                else if (!(hits.front >> k & 1u) && !radiosity.two_sided()[hits.primitive[k]])
+                else if (is_black(k, hits))
                     lost.behind += weight[k];
             }
         }

@@ -62,6 +62,12 @@ struct SolutionLuminaire {
     std::uint32_t group = 0;
 };
 
+/// Sun or sky of the input and the light group that it shines in.
+struct SolutionDistantLight {
+    DistantLight light;
+    std::uint32_t group = 0;
+};
+
 struct Solution {
     std::string title;
     Quantity quantity = Quantity::unitless;
@@ -79,6 +85,8 @@ struct Solution {
     std::vector<Material> materials;
     std::vector<Emitter> emitters;
     std::vector<SolutionLuminaire> luminaires;
+    std::vector<SolutionDistantLight> distant;  ///< sun and sky
+    std::vector<LightScene> light_scenes;       ///< named settings of the groups' weights
 
     std::vector<Camera> cameras;
     std::vector<SensorGrid> grids;

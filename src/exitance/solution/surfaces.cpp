@@ -25,15 +25,18 @@ RayCaster caster_of(const Solution& solution, const std::vector<std::uint32_t>& 
     const std::vector<Vec3> points(solution.positions.begin(), solution.positions.end());
     std::vector<RayCaster::Face> faces;
     std::vector<char> open;
+    std::vector<float> transmittance;
     faces.reserve(solution.triangles.size()), open.reserve(solution.triangles.size());
     for (std::size_t t = 0; t < solution.triangles.size(); ++t) {
         const auto& [a, b, c] = solution.triangles[t];
         faces.push_back({a, b, c, c});
         // The other side of a two-sided surface is a triangle of its own in the same place.
         const SolutionPart& part = solution.parts[part_of_triangle[t]];
-        open.push_back(backs == Backs::open || solution.materials[part.material].two_sided);
+        const Material& material = solution.materials[part.material];
+        open.push_back(backs == Backs::open || material.two_sided);
+        transmittance.push_back(static_cast<float>(material.clear_transmittance()));
     }
-    return {points, faces, std::move(open)};
+    return {points, faces, std::move(open), std::move(transmittance)};
 }
 
 }  // namespace

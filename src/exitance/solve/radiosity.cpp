@@ -6,6 +6,7 @@
 #include "exitance/math/polygon.h"
 #include "exitance/run/parallel.h"
 #include "exitance/scene/texture_map.h"
+#include "exitance/solve/distant_flux.h"
 #include "exitance/visibility/exposure.h"
 
 namespace exitance {
@@ -14,11 +15,14 @@ namespace {
 
 RayCaster make_caster(const Scene& scene) {
     std::vector<RayCaster::Face> faces;
+    std::vector<float> transmittance;
     faces.reserve(scene.polygons.size());
-    for (const Polygon& p : scene.polygons)
+    for (const Polygon& p : scene.polygons) {
         faces.push_back({p.corners[0], p.corners[1], p.corners[2],
                          p.size() == 4 ? p.corners[3] : p.corners[2]});
-    return RayCaster(scene.points, faces);
+        transmittance.push_back(static_cast<float>(scene.material(p).clear_transmittance()));
+    }
+    return RayCaster(scene.points, faces, {}, std::move(transmittance));
 }
 
 }  // namespace
@@ -80,6 +84,14 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
         emitted_flux_ += scene.luminaires[l].flux() *
                          static_cast<double>(columns.luminance(emitted_by_luminaire(l)));
     }
+    emitted_from_afar_.assign(scene.distant.size() * columns.stride, 0.0f);
+    for (std::size_t l = 0; l < scene.distant.size(); ++l) {
+        const DistantLight& light = scene.distant[l];
+        for (std::size_t b = 0; b < columns.bands; ++b)
+            emitted_from_afar_[l * columns.stride + groups.group_of_distant[l] * columns.bands +
+                               b] = static_cast<float>(light.colour[b]);
+        if (light.kind == DistantLight::Kind::sky && light.shines()) skies.emplace_back(l, light);
+    }
     for (const Polygon& p : scene.polygons) two_sided_.push_back(scene.material(p).two_sided);
 
     for (const Face& face : mesh.faces()) {
@@ -88,7 +100,14 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
         area_ += a;
         emitted_flux_ += a * static_cast<double>(columns.luminance(emitted(face)));
     }
+    for (std::size_t l = 0; l < scene.distant.size(); ++l)
+        emitted_flux_ +=
+            groups.groups[groups.group_of_distant[l]].weight * received_flux(*this, l, 0);
     admit_new_vertices();
+}
+
+std::span<const float> Radiosity::emitted_from_afar(std::size_t light) const {
+    return {&emitted_from_afar_[light * columns.stride], columns.stride};
 }
 
 std::span<const float> Radiosity::rho(const Face& face) const {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "exitance/mesh/field.h"
@@ -12,6 +13,7 @@
 #include "exitance/scene/groups.h"
 #include "exitance/scene/scene.h"
 #include "exitance/transport/luminaire_source.h"
+#include "exitance/transport/sky_source.h"
 #include "exitance/visibility/place_owners.h"
 #include "exitance/visibility/ray_caster.h"
 #include "exitance/visibility/receivers.h"
@@ -40,7 +42,8 @@ class Radiosity {
     Columns columns;
     RayCaster caster;
     PlaceOwners owners;
-    std::vector<LuminaireSource> luminaires;  ///< emit, and are not in the mesh
+    std::vector<LuminaireSource> luminaires;               ///< emit, and are not in the mesh
+    std::vector<std::pair<std::size_t, SkySource>> skies;  ///< by their index in Scene::distant
     Mesh mesh;
 
     Receivers receivers;        ///< one per vertex
@@ -64,6 +67,8 @@ class Radiosity {
     bool textured(const Face& face) const;
     /// What a luminaire emits per column, for an intensity of 1: its colour in its group.
     std::span<const float> emitted_by_luminaire(std::size_t luminaire) const;
+    /// Per column: the colour of a distant light in its group.
+    std::span<const float> emitted_from_afar(std::size_t light) const;
     bool emits(const Face& face) const;
     bool reflects(const Face& face) const;
 
@@ -89,7 +94,7 @@ class Radiosity {
     void reflected_exitance(ElementId leaf, std::span<float> out) const;
 
     double area() const { return area_; }
-    /// Luminance-weighted emitted flux.
+    /// Luminance-weighted emitted flux; of sun and sky what the mesh takes (solve/distant_flux.h).
     double emitted_flux() const { return emitted_flux_; }
 
     const std::vector<char>& two_sided() const { return two_sided_; }
@@ -111,6 +116,7 @@ class Radiosity {
     std::size_t textured_elements_ = 0;  ///< looked at for the above
     void find_rho_of_new_elements();
     void find_emission_of_textured_polygons();
+    std::vector<float> emitted_from_afar_;  ///< distant light × stride
     std::vector<char> two_sided_;
     double area_ = 0, emitted_flux_ = 0;
 };

@@ -8,6 +8,7 @@
 
 #include "exitance/math/polygon.h"
 #include "exitance/run/parallel.h"
+#include "exitance/solve/distant_cast.h"
 #include "exitance/solve/luminaire_light.h"
 
 namespace exitance {
@@ -110,7 +111,10 @@ std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& receive
     std::uint64_t rays = 0;
     for (const FaceId face : emitters_) rays += cast(emission_of(radiosity_, face));
     rays += cast_luminaires(radiosity_, receivers, which, tolerance(), options_.column, received);
+    rays += cast_suns(radiosity_, receivers, which, tolerance(), options_.column, received);
     received.note_seen();
+    // The sky has no sharp shadows, and indoors it would hide what lamps and sun show of theirs.
+    rays += cast_skies(radiosity_, receivers, which, tolerance(), options_.column, received);
     const Columns& columns = radiosity_.columns;
     for (std::size_t p = 0; p < radiosity_.mesh.patches().size(); ++p)
         if (columns.magnitude({&patch_shot_[p * columns.stride], columns.stride}) > 0)
@@ -121,7 +125,7 @@ std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& receive
 void Shooting::shoot_emission() {
     received_.reset(radiosity_.receivers.size(), radiosity_.columns.stride);
     rays_ += illuminate(radiosity_.receivers, received_);
-    shots_ += emitters_.size() + radiosity_.luminaires.size();
+    shots_ += emitters_.size() + radiosity_.luminaires.size() + radiosity_.scene.distant.size();
     deliver(received_);
     radiosity_.seen = received_.seen;
     find_unshot();

@@ -19,13 +19,16 @@ constexpr std::size_t width = RayPacket::width;
 struct Visibility {
     double seen = 0, all = 0;
     std::uint32_t samples = 0;
-    bool any_seen = false, any_hidden = false;
+    bool any_seen = false, any_hidden = false, uneven = false;  ///< uneven: through other glass
+    float through = -1;                                         ///< of the last that was seen
+    bool partly() const { return (any_seen && any_hidden) || uneven; }
 };
 
 class Rays {
   public:
     Rays(const RayCaster& caster, bool occlusion) : caster_(caster), occlusion_(occlusion) {
         packet_.near.fill(0.0f), packet_.far.fill(1.0f);
+        through_.fill(1.0f);
         packet_.active = 0;
     }
 
@@ -45,14 +48,17 @@ class Rays {
 
     void flush() {
         if (filled_ == 0) return;
-        const std::uint32_t blocked = occlusion_ ? caster_.occluded(packet_) : 0;
+        const std::uint32_t blocked = occlusion_ ? caster_.occluded(packet_, through_) : 0;
         if (occlusion_) count += filled_;
         for (std::size_t i = 0; i < filled_; ++i) {
             Visibility& v = *receiver_[i];
             v.all += weight_[i];
             const bool hidden = blocked >> i & 1u;
-            if (!hidden) v.seen += weight_[i];
             (hidden ? v.any_hidden : v.any_seen) = true;
+            if (hidden) continue;
+            v.seen += weight_[i] * double(through_[i]);
+            v.uneven = v.uneven || (v.through >= 0 && v.through != through_[i]);
+            v.through = through_[i];
         }
         filled_ = 0;
         packet_.active = 0;
@@ -66,6 +72,7 @@ class Rays {
     RayPacket packet_;
     std::size_t filled_ = 0;
     std::array<double, width> weight_{};
+    std::array<float, width> through_;
     std::array<Visibility*, width> receiver_{};
 };
 
@@ -123,7 +130,8 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
             packets.flush();
             more = false;
             for (std::size_t i = 0; i < n; ++i) {
-                const bool undecided = visible[i].any_seen == visible[i].any_hidden;
+                const bool undecided =
+                    visible[i].any_seen == visible[i].any_hidden || visible[i].uneven;
                 if (!undecided || goal[i] >= most[i]) continue;
                 goal[i] = std::min(most[i], std::max(8u, 2 * goal[i]));
                 more = true;
@@ -134,7 +142,7 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
             if (!(v.all > 0)) continue;
             ColumnEntry& entry = entries[begin + i];
             entry.visible = static_cast<float>(v.seen / v.all);
-            if (v.any_seen && v.any_hidden)
+            if (v.partly())
                 entry.deviation =
                     static_cast<float>(0.5 * std::pow(static_cast<double>(v.samples), -0.75));
         }

@@ -7,6 +7,7 @@
 #include "exitance/math/warp.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/visibility/beyond_glass.h"
 
 namespace exitance {
 
@@ -35,7 +36,7 @@ void find_exposed(const RayCaster& caster, std::span<const char> two_sided,
             }
             rays.active = 0xffffu;
             RayCaster::PacketHits hits;
-            caster.closest(rays, hits);
+            closest_beyond_glass(caster, rays, hits, [](auto, const auto&) {});
             int backs = 0;
             for (std::size_t k = 0; k < RayPacket::width; ++k)
                 if (hits.primitive[k] != 0xffffffffu && !(hits.front >> k & 1u) &&

@@ -48,9 +48,15 @@ struct alignas(64) LaneMask {
     }
 };
 
+/// What the filters know of the faces.
+struct FilteredFaces {
+    std::vector<char> open_backs;  ///< empty, or per face
+    std::vector<float> transmittance;
+};
+
 // Hits on the back of a face that is open there do not count.
 void reject_open_backs(const RTCFilterFunctionNArguments* query) {
-    const auto& open_backs = *static_cast<const std::vector<char>*>(query->geometryUserPtr);
+    const auto& open_backs = static_cast<const FilteredFaces*>(query->geometryUserPtr)->open_backs;
     const unsigned n = query->N;
     for (unsigned i = 0; i < n; ++i) {
         if (query->valid[i] != -1) continue;
@@ -61,10 +67,37 @@ void reject_open_backs(const RTCFilterFunctionNArguments* query) {
     }
 }
 
+// Rays that ask what glass lets through carry it along.
+struct GlassContext : RTCIntersectContext {
+    float* through = nullptr;  ///< by the id of the ray
+};
+
+// Shadow rays go through glass. The back of a face that is open there is the other side of one
+// that counts.
+void pass_through_glass(const RTCFilterFunctionNArguments* query) {
+    const auto& faces = *static_cast<const FilteredFaces*>(query->geometryUserPtr);
+    float* through = static_cast<const GlassContext*>(query->context)->through;
+    const unsigned n = query->N;
+    for (unsigned i = 0; i < n; ++i) {
+        if (query->valid[i] != -1) continue;
+        const unsigned primitive = RTCHitN_primID(query->hit, n, i);
+        const float transmittance = faces.transmittance[primitive];
+        if (!(transmittance > 0)) continue;
+        query->valid[i] = 0;
+        if (!through) continue;
+        const float facing = RTCHitN_Ng_x(query->hit, n, i) * RTCRayN_dir_x(query->ray, n, i) +
+                             RTCHitN_Ng_y(query->hit, n, i) * RTCRayN_dir_y(query->ray, n, i) +
+                             RTCHitN_Ng_z(query->hit, n, i) * RTCRayN_dir_z(query->ray, n, i);
+        if (facing >= 0 && !faces.open_backs.empty() && faces.open_backs[primitive]) continue;
+        through[RTCRayN_id(query->ray, n, i)] *= transmittance;
+    }
+}
+
 }  // namespace
 
 struct RayCaster::Embree {
-    std::vector<char> open_backs;
+    FilteredFaces faces;
+    bool has_glass = false;
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene = nullptr;
 
@@ -81,7 +114,7 @@ struct RayCaster::Embree {
 };
 
 RayCaster::RayCaster(std::span<const Vec3> points, std::span<const Face> faces,
-                     std::vector<char> open_backs)
+                     std::vector<char> open_backs, std::vector<float> transmittance)
     : embree_(std::make_unique<Embree>()) {
     Box box;
     for (const Face& face : faces)
@@ -107,11 +140,13 @@ RayCaster::RayCaster(std::span<const Vec3> points, std::span<const Face> faces,
     std::fill_n(indices, 4, 0u);
     for (std::size_t i = 0; i < faces.size(); ++i)
         std::copy(faces[i].begin(), faces[i].end(), indices + 4 * i);
-    embree_->open_backs = std::move(open_backs);
-    if (!embree_->open_backs.empty()) {
-        rtcSetGeometryUserData(geometry, &embree_->open_backs);
+    embree_->faces = {std::move(open_backs), std::move(transmittance)};
+    const auto& passes = embree_->faces.transmittance;
+    embree_->has_glass = std::any_of(passes.begin(), passes.end(), [](float t) { return t > 0; });
+    rtcSetGeometryUserData(geometry, &embree_->faces);
+    if (!embree_->faces.open_backs.empty())
         rtcSetGeometryIntersectFilterFunction(geometry, reject_open_backs);
-    }
+    if (embree_->has_glass) rtcSetGeometryOccludedFilterFunction(geometry, pass_through_glass);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(embree_->scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -133,17 +168,40 @@ Vec3 RayCaster::middle() const {
     return middle_;
 }
 
-std::uint32_t RayCaster::occluded(const RayPacket& rays) const {
+bool RayCaster::has_glass() const {
+    return embree_->has_glass;
+}
+float RayCaster::transmittance(std::uint32_t primitive) const {
+    return embree_->has_glass ? embree_->faces.transmittance[primitive] : 0.0f;
+}
+
+namespace {
+
+std::uint32_t occluded_by(RTCScene scene, const RayPacket& rays, float* through) {
     RTCRay16 ray;
     fill(ray, rays);
+    for (unsigned i = 0; i < RayPacket::width; ++i) ray.id[i] = i;
     const LaneMask mask(rays.active);
-    RTCIntersectContext context;
+    GlassContext context;
     rtcInitIntersectContext(&context);
-    rtcOccluded16(mask.lanes.data(), embree_->scene, &context, &ray);
+    context.through = through;
+    rtcOccluded16(mask.lanes.data(), scene, &context, &ray);
     std::uint32_t blocked = 0;
     for (std::size_t i = 0; i < RayPacket::width; ++i)
         blocked |= (ray.tfar[i] == -infinity ? 1u : 0u) << i;
     return blocked & rays.active;
+}
+
+}  // namespace
+
+std::uint32_t RayCaster::occluded(const RayPacket& rays) const {
+    return occluded_by(embree_->scene, rays, nullptr);
+}
+
+std::uint32_t RayCaster::occluded(const RayPacket& rays,
+                                  std::array<float, RayPacket::width>& through) const {
+    through.fill(1.0f);
+    return occluded_by(embree_->scene, rays, embree_->has_glass ? through.data() : nullptr);
 }
 
 bool RayCaster::occluded(const Vec3& from, const Vec3& to) const {
@@ -152,7 +210,7 @@ bool RayCaster::occluded(const Vec3& from, const Vec3& to) const {
     ray.org_x = origin.x, ray.org_y = origin.y, ray.org_z = origin.z;
     ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
     ray.tnear = 0, ray.tfar = 1, ray.mask = ~0u;
-    RTCIntersectContext context;
+    GlassContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(embree_->scene, &context, &ray);
     return ray.tfar < 0;

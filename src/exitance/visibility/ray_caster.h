@@ -35,10 +35,11 @@ class RayCaster {
     using Face = std::array<std::uint32_t, 4>;  ///< corners; the last two equal for a triangle
 
     /// `faces` index `points`; positions are stored in float relative to the middle of the scene.
-    /// closest() goes through the back of face i where `open_backs[i]`; none by default.
-    /// Throws Error(could_not_finish) when Embree runs out of memory.
+    /// closest() goes through the back of face i where `open_backs[i]`; none by default. Face i is
+    /// glass where `transmittance[i]` > 0, the share of light that goes straight through it: it
+    /// does not occlude. Throws Error(could_not_finish) when Embree runs out of memory.
     RayCaster(std::span<const Vec3> points, std::span<const Face> faces,
-              std::vector<char> open_backs = {});
+              std::vector<char> open_backs = {}, std::vector<float> transmittance = {});
     ~RayCaster();
     RayCaster(RayCaster&&) noexcept;
     RayCaster& operator=(RayCaster&&) noexcept;
@@ -52,7 +53,15 @@ class RayCaster {
     /// Bit i set: ray i is blocked strictly between near and far.
     std::uint32_t occluded(const RayPacket& rays) const;
     bool occluded(const Vec3& from, const Vec3& to) const;
-    /// The nearest primitive on the ray from `origin` along `direction`, within (near, far).
+    /// The same, and what share of the light along each ray the glass on its way lets through.
+    std::uint32_t occluded(const RayPacket& rays,
+                           std::array<float, RayPacket::width>& through) const;
+
+    bool has_glass() const;
+    /// Of a face: the share of light that goes straight through; 0 = it blocks.
+    float transmittance(std::uint32_t primitive) const;
+    /// The nearest primitive, glass too, on the ray from `origin` along `direction`, within (near,
+    /// far).
     std::optional<RayHit> closest(const Vec3& origin, const Vec3& direction, double near,
                                   double far) const;
     /// Nearest hits of a packet: primitive index (none = 0xffffffff), distance, and whether the

@@ -116,7 +116,8 @@ void aim(Task& task, RayPacket& rays, const Source& source, const Parametrisatio
 struct Sums {
     float kernel = 0, seen = 0, disk = 0;
     std::uint16_t samples = 0;
-    bool any_seen = false, any_hidden = false;
+    bool any_seen = false, any_hidden = false, uneven = false;  // uneven: through other glass
+    float through = -1;                                         // of the first that was seen
 };
 
 }  // namespace
@@ -140,6 +141,9 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
     Task task;
     RayPacket rays;
     std::size_t filled = 0;
+    const bool glass = occlusion && caster.has_glass();
+    std::array<float, width> through;
+    through.fill(1.0f);
     const auto cast = [&] {
         for (std::size_t i = filled; i < width; ++i) {  // idle lanes repeat the first
             task.owner[i] = task.owner[0], task.sample[i] = task.sample[0];
@@ -157,8 +161,9 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
                                     rays.origin_y[i] + rays.direction_y[i],
                                     rays.origin_z[i] + rays.direction_z[i]}))
                     covered |= 1u << i;
-        const std::uint32_t blocked =
-            covered | (rays.active && occlusion ? caster.occluded(rays) : 0);
+        std::uint32_t blocked = covered;
+        if (rays.active && occlusion)
+            blocked |= glass ? caster.occluded(rays, through) : caster.occluded(rays);
         if (occlusion) out.rays += static_cast<std::uint64_t>(__builtin_popcount(rays.active));
         for (std::size_t i = 0; i < filled; ++i) {
             Sums& sum = sums[task.owner[i]];
@@ -169,8 +174,10 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
                 sum.any_hidden = true;
             } else {
                 sum.any_seen = true;
-                sum.seen += task.kernel[i];
-                sum.disk += task.disk[i];
+                sum.seen += task.kernel[i] * through[i];
+                sum.disk += task.disk[i] * through[i];
+                sum.uneven = sum.uneven || (sum.through >= 0 && sum.through != through[i]);
+                sum.through = through[i];
             }
         }
         filled = 0;
@@ -203,7 +210,8 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
         std::size_t kept = 0;
         for (std::size_t k = 0; k < open_count; ++k) {
             const std::uint8_t r = open[k];
-            const bool undecided = sums[r].any_seen == sums[r].any_hidden;  // both, or neither
+            const bool undecided =  // both, or neither
+                sums[r].any_seen == sums[r].any_hidden || sums[r].uneven;
             if (!undecided || goal[r] >= budget.most[r]) continue;
             goal[r] = std::min<std::uint16_t>(budget.most[r],
                                               static_cast<std::uint16_t>(std::max(8, 2 * goal[r])));
@@ -216,7 +224,7 @@ void find_visible_fractions(const RayCaster& caster, const Source& source,
         // No sample above the horizon: a sliver that nothing was found to hide.
         out.fraction[r] = sum.kernel > 0 ? sum.seen / sum.kernel : 1.0f;
         out.disk[r] = sum.samples ? sum.disk / static_cast<float>(sum.samples) : 0.0f;
-        const bool partly = sum.any_seen && sum.any_hidden;
+        const bool partly = (sum.any_seen && sum.any_hidden) || sum.uneven;
         const float root = partly ? std::sqrt(std::sqrt(static_cast<float>(sum.samples))) : 1.0f;
         out.deviation[r] = partly ? 0.5f / (root * root * root) : 0.0f;
     }

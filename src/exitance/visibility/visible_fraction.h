@@ -16,7 +16,7 @@ struct RayBudget {
     std::array<std::uint16_t, ReceiverBlock::capacity> most;  ///< if the probes disagree, ≤ 256
 };
 
-/// Per receiver of a block.
+/// Per receiver of a block. V is what glass lets through, between hidden, 0, and seen, 1.
 struct VisibleFractions {
     /// Σ V k / Σ k over the samples, k = cosθ₁ cosθ₂ / r²: the visible part of the factor, which
     /// differs from the visible part of the area where the receiver's horizon cuts the source.

@@ -78,39 +78,6 @@ Spectrum lamp_exitance(const TomlTable& table, double area) {
 
 }  // namespace
 
-std::vector<std::string> luminaire_keys() {
-    return {"name",
-            "shape",
-            "file",
-            "position",
-            "aim",
-            "target",
-            "up",
-            "rotation",
-            "width",
-            "height",
-            "radius",
-            "beam",
-            "field",
-            "lumens",
-            "watts",
-            "exitance",
-            "candela",
-            "lamp_lumens",
-            "lamp_set",
-            "multiplier",
-            "dimming",
-            "color",
-            "maintenance",
-            "color_temperature",
-            "group",
-            "columns",
-            "rows",
-            "spacing",
-            "array_rotation",
-            "housing"};
-}
-
 void LuminaireReader::add(const TomlTable& table) {
     for (const char* key : {"name", "position"}) table.require(key);
     if (!table.has("file")) table.require("shape");

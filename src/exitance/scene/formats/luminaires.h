@@ -14,9 +14,6 @@
 
 namespace exitance {
 
-/// The keys that a [[luminaire]] may have.
-std::vector<std::string> luminaire_keys();
-
 /// Adds the lamps of a project: those with an area as a material and a surface of their own, those
 /// with a photometric file, points and spots as luminaires.
 class LuminaireReader {

@@ -5,18 +5,22 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <optional>
 
 #include "exitance/math/transform.h"
+#include "exitance/scene/formats/daylight.h"
 #include "exitance/scene/formats/glob.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/luminaires.h"
+#include "exitance/scene/formats/project_keys.h"
 #include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/formats/toml_direction.h"
 #include "exitance/scene/formats/toml_table.h"
+#include "exitance/scene/groups.h"
 #include "exitance/scene/merge.h"
 
 namespace exitance {
@@ -40,19 +44,15 @@ class ProjectReader {
     ProjectReader(const std::filesystem::path& path, std::string_view text,
                   const ReadGeometry& read_geometry)
         : path_(path),
-          root_(TomlTable::parse(path.string(), text, "a project",
-                                 {"title", "quantity", "geometry", "polygon", "material",
-                                  "luminaire", "camera", "grid", "solve"})),
+          root_(TomlTable::parse(path.string(), text, "a project", project_keys(""))),
           read_geometry_(read_geometry) {}
 
     Scene read() {
         scene_.title = root_.text("title").value_or(as_utf8(path_.stem().string()));
-        const auto materials = root_.tables("material", {"match", "name", "reflectance", "exitance",
-                                                         "luminance", "group", "two_sided"});
-        const auto luminaires = root_.tables("luminaire", luminaire_keys());
+        const auto materials = root_.tables("material", project_keys("material"));
+        const auto luminaires = root_.tables("luminaire", project_keys("luminaire"));
         std::vector<Part> parts;
-        for (const TomlTable& table :
-             root_.tables("geometry", {"file", "unit", "up", "translate", "rotate", "scale"}))
+        for (const TomlTable& table : root_.tables("geometry", project_keys("geometry")))
             parts.push_back(geometry(table));
         decide_quantity(materials, luminaires, parts);
         if (!parts.empty()) scene_.up = normalized(parts[0].placing.vector(parts[0].scene.up));
@@ -64,20 +64,18 @@ class ProjectReader {
             merge(scene_, std::move(part.scene), part.placing);
         }
         for (const TomlTable& table : materials) material(table);
-        for (const TomlTable& table :
-             root_.tables("polygon", {"corners", "material", "patches", "name"}))
+        for (const TomlTable& table : root_.tables("polygon", project_keys("polygon")))
             polygon(table);
         LuminaireReader lamps(scene_, path_.parent_path());
         for (const TomlTable& table : luminaires) lamps.add(table);
-        for (const TomlTable& table :
-             root_.tables("camera", {"name", "eye", "look_at", "up", "fov", "aspect"}))
-            camera(table);
-        for (const TomlTable& table :
-             root_.tables("grid", {"name", "origin", "u", "v", "columns", "rows", "normal"}))
-            grid(table);
+        add_daylight(scene_, root_, path_.parent_path());
+        for (const TomlTable& table : root_.tables("camera", project_keys("camera"))) camera(table);
+        for (const TomlTable& table : root_.tables("grid", project_keys("grid"))) grid(table);
         // [solve] is kept as text; whoever solves knows the names.
         for (const auto& [name, value, place] : root_.scalars("solve"))
             scene_.settings.push_back({name, value, place});
+        for (const auto& [place, factors] : root_.scalar_tables("scenes"))
+            light_scene(place, factors);
         return std::move(scene_);
     }
 
@@ -224,6 +222,12 @@ class ProjectReader {
             material.exitance_pattern = {};
         }
         if (const auto group = table.text("group")) material.group = *group;
+        if (const auto tau = table.spectrum("transmittance", 0, 1)) {
+            material.transmittance = *tau;
+            for (std::size_t b = 0; b < tau->size(); ++b)
+                if ((*tau)[b] + material.reflectance[b] > 1)
+                    table.refuse("transmittance", "at most 1 together with the reflectance");
+        }
         if (const auto both = table.flag("two_sided")) material.two_sided = *both;
     }
 
@@ -303,19 +307,79 @@ class ProjectReader {
     }
 
     void grid(const TomlTable& table) {
-        for (const char* key : {"origin", "u", "v", "columns", "rows"}) table.require(key);
+        for (const char* key : {"origin", "u", "v"}) table.require(key);
         SensorGrid grid;
         grid.name = table.text("name").value_or(fmt::format("grid {}", scene_.grids.size() + 1));
         grid.origin = *table.vector("origin");
         grid.u = *table.vector("u");
         grid.v = *table.vector("v");
-        grid.columns = *table.count("columns", 1, 10000);
-        grid.rows = *table.count("rows", 1, 10000);
+        divide(table, grid);
         const Vec3 across = cross(grid.u, grid.v);
         if (!table.has("normal") && !(length(across) > 0))
             throw Error(table.place("v"), "found 'v' along 'u', expected another direction");
         grid.normal = direction(table, "normal", normalized(across));
         scene_.grids.push_back(std::move(grid));
+    }
+
+    // Columns and rows, by number or by the distance of neighbours, inside a margin.
+    static void divide(const TomlTable& table, SensorGrid& grid) {
+        const double a = length(grid.u), b = length(grid.v);
+        if (const auto margin = table.number("margin", 0, farthest)) {
+            if (!(2 * *margin < std::min(a, b)))
+                table.refuse("margin", "less than half of 'u' and 'v'");
+            grid.origin += grid.u * (*margin / a) + grid.v * (*margin / b);
+            grid.u = grid.u * (1 - 2 * *margin / a);
+            grid.v = grid.v * (1 - 2 * *margin / b);
+        }
+        if (const auto spacing = table.number("spacing", shortest, farthest)) {
+            for (const char* key : {"columns", "rows"})
+                if (table.has(key))
+                    throw Error(
+                        table.place(key),
+                        fmt::format("found both 'spacing' and '{}', expected one of them", key));
+            const auto count = [&](double side) {
+                const double n = std::max(1.0, std::round(side / *spacing));
+                if (n > 10000) table.refuse("spacing", "at most 10000 points along each side");
+                return static_cast<std::uint32_t>(n);
+            };
+            grid.columns = count(length(grid.u)), grid.rows = count(length(grid.v));
+            return;
+        }
+        for (const char* key : {"columns", "rows"}) table.require(key);
+        grid.columns = *table.count("columns", 1, 10000);
+        grid.rows = *table.count("rows", 1, 10000);
+    }
+
+    // [[scenes]]: a name, and factors by the names of light groups.
+    void light_scene(const Place& place, const std::vector<TomlTable::Scalar>& entries) {
+        LightScene out;
+        out.place = place;
+        std::vector<std::string> known;
+        for (const Grouping grouping : {Grouping::file, Grouping::luminaire, Grouping::material})
+            for (const LightGroup& group : make_groups(scene_, grouping).groups)
+                known.push_back(group.name);
+        for (const TomlTable::Scalar& entry : entries) {
+            if (entry.name == "name") {
+                out.name = as_utf8(entry.value);
+                continue;
+            }
+            if (std::find(known.begin(), known.end(), entry.name) == known.end())
+                throw Error(entry.place,
+                            fmt::format("there is no light group {}{}", in_quotes(entry.name),
+                                        suggestion(entry.name, known)));
+            double factor = 0;
+            const char* end = entry.value.data() + entry.value.size();
+            const auto [rest, failure] = std::from_chars(entry.value.data(), end, factor);
+            if (failure != std::errc{} || rest != end || !(factor >= 0 && factor <= 1e6))
+                throw Error(entry.place, fmt::format("{}: found {}, expected a factor from 0 up",
+                                                     entry.name, in_quotes(entry.value)));
+            out.factors[entry.name] = factor;
+        }
+        if (out.name.empty()) throw Error(place, "[[scenes]] has no 'name'");
+        for (const LightScene& other : scene_.light_scenes)
+            if (other.name == out.name)
+                throw Error(place, fmt::format("there is already a scene {}", in_quotes(out.name)));
+        scene_.light_scenes.push_back(std::move(out));
     }
 
     std::filesystem::path path_;

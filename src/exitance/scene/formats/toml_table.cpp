@@ -229,6 +229,29 @@ std::optional<std::vector<Vec3>> TomlTable::points(const std::string& key) const
     return out;
 }
 
+std::optional<TomlTable::Time> TomlTable::time(const std::string& key) const {
+    const toml::node* found = node(key);
+    if (!found) return std::nullopt;
+    const auto* value = found->as_date_time();
+    if (!value) refuse(key, "a date and time, like 2026-06-21T12:00:00");
+    const toml::date_time& t = value->get();
+    Time out;
+    out.moment.year = t.date.year, out.moment.month = t.date.month, out.moment.day = t.date.day;
+    out.moment.hour = t.time.hour, out.moment.minute = t.time.minute;
+    out.moment.second = t.time.second + 1e-9 * t.time.nanosecond;
+    out.has_zone = t.offset.has_value();
+    if (t.offset) out.moment.zone = t.offset->minutes / 60.0;
+    return out;
+}
+
+std::optional<TomlTable> TomlTable::table(const std::string& key,
+                                          const std::vector<std::string>& keys) const {
+    const toml::node* found = node(key);
+    if (!found) return std::nullopt;
+    if (!found->is_table()) refuse(key, "a table that begins with [" + key + "]");
+    return TomlTable(file_, {table_, found->as_table()}, "[" + key + "]", keys);
+}
+
 std::vector<TomlTable> TomlTable::tables(const std::string& key,
                                          const std::vector<std::string>& keys) const {
     const toml::node* found = node(key);
@@ -252,7 +275,29 @@ std::vector<TomlTable::Scalar> TomlTable::scalars(const std::string& key) const 
     std::vector<Scalar> out;
     if (!found) return out;
     if (!found->is_table()) refuse(key, "a table that begins with [" + key + "]");
-    for (const auto& [name, value] : *found->as_table()) {
+    return scalars_of(*found->as_table());
+}
+
+std::vector<std::pair<Place, std::vector<TomlTable::Scalar>>> TomlTable::scalar_tables(
+    const std::string& key) const {
+    const toml::node* found = node(key);
+    std::vector<std::pair<Place, std::vector<Scalar>>> out;
+    if (!found) return out;
+    const toml::array* array = found->as_array();
+    if (!array) refuse(key, "tables that begin with [[" + key + "]]");
+    for (const toml::node& element : *array) {
+        if (!element.is_table())
+            throw Error(place_of(file_, element),
+                        fmt::format("{}: found {}, expected tables that begin with [[{}]]", key,
+                                    shown(element), key));
+        out.push_back({place_of(file_, element), scalars_of(*element.as_table())});
+    }
+    return out;
+}
+
+std::vector<TomlTable::Scalar> TomlTable::scalars_of(const toml::table& table) const {
+    std::vector<Scalar> out;
+    for (const auto& [name, value] : table) {
         Scalar scalar;
         scalar.name = std::string(name.str());
         scalar.place = place_of(file_, value);

@@ -7,11 +7,13 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "exitance/math/vector.h"
 #include "exitance/run/error.h"
 #include "exitance/scene/spectrum.h"
+#include "exitance/scene/sun_position.h"
 
 namespace toml {
 inline namespace v3 {
@@ -30,6 +32,9 @@ class TomlTable {
     static TomlTable parse(const std::string& file, std::string_view text, const std::string& name,
                            const std::vector<std::string>& keys);
 
+    /// The table [key], which may have `keys`.
+    std::optional<TomlTable> table(const std::string& key,
+                                   const std::vector<std::string>& keys) const;
     /// The tables of an array of tables [[key]], which may have `keys`.
     std::vector<TomlTable> tables(const std::string& key,
                                   const std::vector<std::string>& keys) const;
@@ -41,6 +46,8 @@ class TomlTable {
     };
     /// The words, numbers and flags of the table [key].
     std::vector<Scalar> scalars(const std::string& key) const;
+    /// The same of every table of the array [[key]], with where it begins.
+    std::vector<std::pair<Place, std::vector<Scalar>>> scalar_tables(const std::string& key) const;
 
     bool has(const std::string& key) const { return node(key) != nullptr; }
     bool is_number(const std::string& key) const;
@@ -68,10 +75,17 @@ class TomlTable {
     /// `size` numbers within [least, most].
     std::optional<std::vector<double>> numbers(const std::string& key, std::size_t size,
                                                double least, double most) const;
+    /// A date and time of day; its offset from universal time, if it has one, as the zone.
+    struct Time {
+        Moment moment;
+        bool has_zone = false;
+    };
+    std::optional<Time> time(const std::string& key) const;
     /// A list of points.
     std::optional<std::vector<Vec3>> points(const std::string& key) const;
 
   private:
+    std::vector<Scalar> scalars_of(const toml::table& table) const;
     TomlTable(std::string file, std::shared_ptr<const toml::table> table, std::string name,
               const std::vector<std::string>& keys);
     const toml::node* node(const std::string& key) const;

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+// [site], [sky], [sun], [[scenes]] and environment maps of projects.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+#include "exitance/render/image.h"
+#include "exitance/scene/distant_light.h"
+#include "exitance/scene/read.h"
+#include "formats/samples.h"
+
+namespace exitance {
+namespace {
+
+using testing::Folder;
+
+constexpr double degree = std::numbers::pi / 180;
+
+const std::string floor = R"(quantity = "photometric"
+
+[[material]]
+name = "grey"
+reflectance = 0.3
+
+[[polygon]]
+material = "grey"
+corners = [[0, 0, 0], [0, 0, 4], [4, 0, 4], [4, 0, 0]]
+)";
+
+const std::string munich = R"([site]
+latitude = 48.14
+longitude = 11.58
+time = 2026-06-21T13:17:00+02:00
+)";
+
+Scene read(Folder& folder, const std::string& text) {
+    return read_scene(folder.write("day.toml", floor + text));
+}
+
+TEST(DaylightKeys, PlaceAndTimePutTheSunInTheSky) {
+    Folder folder;
+    const Scene scene = read(folder, munich + "[sky]\nmodel = \"clear\"\n[sun]\n");
+    ASSERT_EQ(scene.distant.size(), 2U);
+    const DistantLight &sky = scene.distant[0], &sun = scene.distant[1];
+    EXPECT_EQ(sky.group, "sky");
+    EXPECT_EQ(sun.group, "sun");
+    // Midsummer noon: 90° − latitude + 23.44° high, in the south (+z).
+    EXPECT_NEAR(std::asin(sun.direction.y) / degree, 90 - 48.14 + 23.44, 0.05);
+    EXPECT_NEAR(sun.direction.x, 0, 0.02);
+    EXPECT_GT(sun.direction.z, 0);
+    EXPECT_EQ(sky.model.sun, sun.direction);
+    EXPECT_NEAR(sun.diameter, 0.53 * degree, 1e-12);
+    // RP-21 by hand: 800 + 15500 √sin 65.3°, and 127500 · 0.967 · exp(−0.21 / sin 65.3°).
+    EXPECT_NEAR(horizontal_irradiance(sky), 15574, 20);
+    EXPECT_NEAR(sun.irradiance, 97900, 500);
+}
+
+TEST(DaylightKeys, EveryModelGivesWhatIsAskedFor) {
+    Folder folder;
+    for (const std::string model :
+         {"model = \"overcast\"", "model = \"uniform\"", "model = \"clear\"",
+          "model = \"cie\"\ntype = 3", "model = \"cie\"\ntype = 14",
+          "model = \"perez\"\ndirect_normal = 600\ndiffuse_horizontal = 120"}) {
+        const Scene scene = read(folder, munich + "[sky]\nhorizontal = 12000\n" + model + "\n");
+        EXPECT_NEAR(horizontal_irradiance(scene.distant.back()), 12000, 1) << model;
+        EXPECT_EQ(scene.distant.size(), model.find("perez") != std::string::npos ? 2U : 1U);
+    }
+    const Scene zenith =
+        read(folder, "[sky]\nmodel = \"overcast\"\nzenith_luminance = 3000\ndimming = 0.5\n");
+    EXPECT_NEAR(luminance(zenith.distant[0].radiance({0, 1, 0})), 1500, 1e-9);
+    EXPECT_NEAR(horizontal_irradiance(zenith.distant[0]), 1500 * 7 * std::numbers::pi / 9, 2);
+}
+
+TEST(DaylightKeys, ASunByAnglesOrDirection) {
+    Folder folder;
+    const Scene west =
+        read(folder, "[sun]\naltitude = 30\nazimuth = 270\nnormal = 40000\ndiameter = 0\n");
+    ASSERT_EQ(west.distant.size(), 1U);
+    EXPECT_NEAR(length(west.distant[0].direction - Vec3{-std::sqrt(0.75), 0.5, 0}), 0, 1e-12);
+    EXPECT_EQ(west.distant[0].irradiance, 40000);
+    EXPECT_EQ(west.distant[0].diameter, 0);
+    const Scene below = read(folder, "[sun]\naltitude = -5\n");
+    EXPECT_EQ(below.distant[0].irradiance, 0) << "it has set";
+}
+
+TEST(DaylightKeys, AMapKeepsItsLight) {
+    Folder folder;
+    // Even, but for one pixel in the middle row's upper neighbour, seen towards −z.
+    Image picture(64, 32);
+    for (Vec3f& pixel : picture.pixels) pixel = {100, 200, 300};
+    picture.at(32, 10) = {100000, 100000, 100000};
+    for (const std::string kind : {".exr", ".hdr"}) {
+        write_image(picture, folder.path() / ("sky" + kind));
+        const Scene scene =
+            read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky" + kind + "\"\nscale = 0.5\n");
+        const DistantLight& sky = scene.distant.at(0);
+        const double up = (0.2126 * 100 + 0.7152 * 200 + 0.0722 * 300) * std::numbers::pi;
+        // The pixel: ΔL · cosθ · solid angle, with cosθ = cos(π (10.5 / 32)).
+        const double zenith = std::numbers::pi * 10.5 / 32;
+        const double solid = (2 * std::numbers::pi / 64) * (std::cos(std::numbers::pi * 10 / 32) -
+                                                            std::cos(std::numbers::pi * 11 / 32));
+        const double spot = (100000 - up / std::numbers::pi) * std::cos(zenith) * solid;
+        EXPECT_NEAR(horizontal_irradiance(sky), 0.5 * (up + spot), 0.01 * (up + spot)) << kind;
+        EXPECT_NEAR(sky.radiance({0, -1, 0})[0], 50, 1) << kind;
+        // Half a pixel to the right of −z.
+        const double round = 2 * std::numbers::pi * 0.5 / 64;
+        EXPECT_GT(luminance(sky.radiance({std::sin(zenith) * std::sin(round), std::cos(zenith),
+                                          -std::sin(zenith) * std::cos(round)})),
+                  20000)
+            << kind;
+    }
+}
+
+TEST(DaylightKeys, WrongOnesAreRefusedWhereTheyStand) {
+    Folder folder;
+    const auto refused = [&](const std::string& text, const std::string& why) {
+        const std::string said = testing::refusal([&] { read(folder, text); });
+        EXPECT_NE(said.find(why), std::string::npos) << said;
+    };
+    refused("[sky]\nmodel = \"cloudy\"\n", "day.toml:11:9: model: found the string 'cloudy'");
+    refused("[sky]\nmodel = \"cie\"\ntype = 16\n", "day.toml:12:8: type: found");
+    refused("[sky]\nmodel = \"clear\"\n", "where the sun stands");
+    refused("[sun]\n", "where the sun stands");
+    refused("[sky]\nmodel = \"map\"\nfile = \"none.hdr\"\n", "day.toml:12:8: there is no file");
+    refused("[sky]\nmodel = \"uniform\"\ntype = 3\n", "'type'");
+    refused("[site]\nlatitude = 91\nlongitude = 0\ntime = 2026-01-01T12:00:00Z\n[sun]\n",
+            "day.toml:11:12: latitude");
+    refused("[site]\nlatitude = 1\nlongitude = 0\ntime = 2026-01-01T12:00:00\n[sun]\n",
+            "time_zone");
+    refused("[site]\nlatitude = 1\nlongitude = 0\ntime = \"noon\"\n[sun]\n",
+            "a date and time, like");
+    refused("[[scenes]]\nname = \"dark\"\nlihgt = 0\n", "there is no light group 'lihgt'");
+    refused("[[scenes]]\nall = 0\n", "has no 'name'");
+    std::ofstream(folder.path() / "bad.hdr") << "no picture";
+    refused("[sky]\nmodel = \"map\"\nfile = \"bad.hdr\"\n", "is not a Radiance picture");
+    std::ofstream(folder.path() / "bad.exr") << "no picture";
+    refused("[sky]\nmodel = \"map\"\nfile = \"bad.exr\"\n", "cannot be read");
+}
+
+TEST(DaylightKeys, ScenesAndGridsBySpacing) {
+    Folder folder;
+    const Scene scene = read(folder, munich + R"([sky]
+model = "clear"
+[[scenes]]
+name = "dull"
+sky = 0.25
+[[grid]]
+origin = [0, 0.8, 0]
+u = [0, 0, 4]
+v = [3, 0, 0]
+margin = 0.5
+spacing = 0.5
+)");
+    ASSERT_EQ(scene.light_scenes.size(), 1U);
+    EXPECT_EQ(scene.light_scenes[0].factors.at("sky"), 0.25);
+    ASSERT_EQ(scene.grids.size(), 1U);
+    EXPECT_EQ(scene.grids[0].columns, 6U);
+    EXPECT_EQ(scene.grids[0].rows, 4U);
+    EXPECT_NEAR(length(scene.grids[0].origin - Vec3{0.5, 0.8, 0.5}), 0, 1e-12);
+    EXPECT_NEAR(scene.grids[0].u.z, 3, 1e-12);
+}
+
+}  // namespace
+}  // namespace exitance
