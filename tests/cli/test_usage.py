@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wrong use ends with exit code 2 and one line that says what was wrong."""
 import re
+import subprocess
 import unittest
 
-from program import PROGRAM, WRONG_USE, ProgramTest, box
+from program import BAD_INPUT, COULD_NOT_FINISH, PROGRAM, WRONG_USE, ProgramTest, box
 
 
 class Usage(ProgramTest):
@@ -64,6 +65,48 @@ class Usage(ProgramTest):
 
     def test_quiet_and_a_log_exclude_each_other(self):
         self.refuse(WRONG_USE, "exclude", "solve", "a.geom", "-o", "b.glb", "-q", "--log", "json")
+
+
+class FoundByUse(ProgramTest):
+    """What once ended in a crash, or in silence."""
+
+    def solution(self):
+        scene = self.write("box.geom", box())
+        solved = self.folder / "box.glb"
+        self.succeed("solve", scene, "-o", solved, "--error", "0.2", "-q")
+        return solved
+
+    def test_places_beyond_all_scenes(self):
+        solved = self.solution()
+        self.refuse(WRONG_USE, "beyond 1e9 m", "render", solved, "-o", self.folder / "x.png",
+                    "--eye", "1e30", "0", "0", "--look-at", "1", "1", "1")
+        points = self.write("far.csv", "x,y,z,nx,ny,nz\n0,1e20,0,0,1,0\n")
+        for method in ("gather", "interpolate"):
+            self.refuse(BAD_INPUT, "far.csv:2:3: found y = 1e20", "probe", solved,
+                        "--points", points, "-o", self.folder / "q.csv", "--method", method)
+
+    def test_a_scene_without_polygons(self):
+        self.refuse(BAD_INPUT, "no polygons", "solve", self.write("empty.toml", ""),
+                    "-o", self.folder / "e.glb")
+
+    def test_a_key_without_end(self):
+        endless = self.write("key.toml", ".".join(["a"] * 50_000) + " = 1\n")
+        self.refuse(BAD_INPUT, "key.toml:1:1: found a key of more than 256 parts", "info", endless)
+
+    def test_a_solution_is_no_scene(self):
+        self.refuse(WRONG_USE, "is a solution already", "solve", self.solution(),
+                    "-o", self.folder / "again.glb")
+
+    def test_output_that_cannot_be_printed(self):
+        scene = self.write("box.geom", box())
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, "info", scene], stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual(done.returncode, COULD_NOT_FINISH)
+
+    def test_the_light_of_a_solve_that_had_no_time_is_unshot(self):
+        said = self.succeed("solve", self.write("box.geom", box()), "-o", self.folder / "b.glb",
+                            "--time", "0").stdout
+        self.assertIn("100 % unshot; balance off by 0 %", said)
 
 
 if __name__ == "__main__":
