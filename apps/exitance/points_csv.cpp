@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "exitance/run/error.h"
+#include "exitance/scene/formats/limits.h"
 
 namespace exitance::cli {
 
@@ -76,7 +77,7 @@ double number_of(const Cell& cell, std::string_view column, const Place& line) {
     if (failure != std::errc{} || rest != end || !std::isfinite(value))
         throw Error(Place{line.file, line.line, cell.column},
                     fmt::format("found '{}', expected a number for {}", cell.text, column));
-    if (!(std::abs(value) <= 1e9))
+    if (!(std::abs(value) <= limits::coordinate))
         throw Error(Place{line.file, line.line, cell.column},
                     fmt::format("found {} = {}, expected at most 1e9 m", column, cell.text));
     return value;

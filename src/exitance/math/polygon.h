@@ -24,6 +24,25 @@ inline Vec3 unit_normal(std::span<const Vec3> corners) {
     return normalized(vector_area(corners));
 }
 
+/// Whether the outline turns the same way at every corner, and at none goes straight on.
+inline bool is_strictly_convex(std::span<const Vec3> corners) {
+    const Vec3 normal = vector_area(corners);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Vec3 &a = corners[i], &b = corners[(i + 1) % corners.size()],
+                   &c = corners[(i + 2) % corners.size()];
+        if (!(dot(cross(b - a, c - b), normal) > 0)) return false;
+    }
+    return true;
+}
+
+/// Length of the longest side.
+inline double longest_side(std::span<const Vec3> corners) {
+    double longest = 0;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        longest = std::max(longest, length(corners[(i + 1) % corners.size()] - corners[i]));
+    return longest;
+}
+
 /// Mean of the corners.
 inline Vec3 centroid(std::span<const Vec3> corners) {
     Vec3 sum;

@@ -130,7 +130,7 @@ class MeshBuilder {
                 degenerate |= whole.corners[i] == whole.corners[(i + 1) % n];
             if (degenerate) continue;
             whole.normal = unit_normal(corners);
-            if (contacts[p].empty() || !is_convex(corners, whole.normal)) {
+            if (contacts[p].empty() || !is_strictly_convex(corners)) {
                 for (std::uint32_t i = 0; i < n; ++i)
                     whole.sides[i] = side(whole.corners[i], whole.corners[(i + 1) % n]);
                 add(whole, polygon.patches);
@@ -138,15 +138,6 @@ class MeshBuilder {
                 add_pieces(whole, corners, cut(corners, contacts[p], gap), polygon.patches);
             }
         }
-    }
-
-    static bool is_convex(std::span<const Vec3> corners, const Vec3& normal) {
-        const std::size_t n = corners.size();
-        for (std::size_t i = 0; i < n; ++i) {
-            const Vec3 &a = corners[i], &b = corners[(i + 1) % n], &c = corners[(i + 2) % n];
-            if (dot(cross(b - a, c - b), normal) <= 0) return false;
-        }
-        return true;
     }
 
     void add_pieces(const Face& whole, std::span<const Vec3> corners, const CutPolygon& parts,

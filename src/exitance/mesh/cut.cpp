@@ -165,9 +165,7 @@ class Cutting {
         const auto quality = [&](std::initializer_list<std::size_t> which) {
             std::vector<Vec3> p;
             for (const std::size_t i : which) p.push_back(place(loop.corners[i % n]));
-            double longest = 0;
-            for (std::size_t i = 0; i < p.size(); ++i)
-                longest = std::max(longest, length(p[(i + 1) % p.size()] - p[i]));
+            const double longest = longest_side(p);
             return area(p) / (longest * longest);
         };
         std::size_t best = 0;

@@ -6,15 +6,15 @@
 #include <numbers>
 
 #include "exitance/run/error.h"
+#include "exitance/scene/formats/limits.h"
 
 namespace exitance {
 
 CameraRays::CameraRays(const Camera& camera, std::uint32_t width, std::uint32_t height)
     : eye_(camera.eye), centre_{0.5 * width, 0.5 * height} {
     forward_ = normalized(camera.look_at - camera.eye);
-    constexpr double farthest = 1e9;  // [m], as for the coordinates of scenes
     for (const Vec3& p : {camera.eye, camera.look_at})
-        if (!(length(p) < farthest))
+        if (!(length(p) < limits::coordinate))
             throw Error(Fault::wrong_use, "camera '" + camera.name +
                                               "': a place beyond 1e9 m, expected one in the scene");
     if (!is_finite(forward_) || !is_finite(camera.eye) || length(forward_) < 0.5)

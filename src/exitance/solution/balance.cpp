@@ -10,8 +10,8 @@
 #include "exitance/math/warp.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/solution/lost_light.h"
 #include "exitance/solution/luminaire_losses.h"
-#include "exitance/visibility/beyond_glass.h"
 
 namespace exitance {
 
@@ -26,14 +26,6 @@ struct Sender {
     std::uint32_t count;
     Vec3 normal;
     bool covered;  ///< partly: what its covered part seems to send never was
-};
-
-struct Lost {
-    double escaped = 0, behind = 0;
-    Lost& operator+=(const Lost& o) {
-        escaped += o.escaped, behind += o.behind;
-        return *this;
-    }
 };
 
 Vec3 point_on(const Sender& s, UnitSquare u) {
@@ -60,15 +52,16 @@ std::uint32_t shuffled(std::uint32_t i, std::uint64_t seed) {
 }
 
 // Rays in proportion to what each sender sends, followed to where they land.
-Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
-            const std::vector<double>& cumulative, std::uint64_t seed) {
+LostLight losses_of(const Radiosity& radiosity, const std::vector<Sender>& senders,
+                    const std::vector<double>& cumulative, std::uint64_t seed) {
     const double total = cumulative.back(), each = total / static_cast<double>(ray_count);
-    return parallel_sum<Lost>(ray_count / RayPacket::width, [&](std::size_t begin,
-                                                                std::size_t end) {
-        Lost lost;
+    return parallel_sum<LostLight>(ray_count / RayPacket::width, [&](std::size_t begin,
+                                                                     std::size_t end) {
+        LostLight lost;
         for (std::size_t packet = begin; packet < end; ++packet) {
             RayPacket rays;
-            std::array<bool, RayPacket::width> covered;
+            rays.near.fill(0.0f), rays.far.fill(std::numeric_limits<float>::infinity());
+            std::uint32_t covered = 0;
             for (std::size_t k = 0; k < RayPacket::width; ++k) {
                 // Systematic sampling of the sender; sequences for place and direction.
                 const auto i = static_cast<std::uint32_t>(packet * RayPacket::width + k);
@@ -77,40 +70,17 @@ Lost follow(const Radiosity& radiosity, const std::vector<Sender>& senders,
                     std::upper_bound(cumulative.begin(), cumulative.end(), at) -
                     cumulative.begin());
                 const Sender& sender = senders[std::min(s, senders.size() - 1)];
-                covered[k] = sender.covered;
+                covered |= (sender.covered ? 1u : 0u) << k;
                 const Vec3 origin =
                     point_on(sender, low_discrepancy(hash_bits(seed, 2), shuffled(i, seed))) +
                     sender.normal * radiosity.caster.clearance() - radiosity.caster.middle();
                 const Vec3 d =
                     Frame(sender.normal).to_world(cosine_hemisphere(low_discrepancy(seed + 1, i)));
-                rays.origin_x[k] = static_cast<float>(origin.x);
-                rays.origin_y[k] = static_cast<float>(origin.y);
-                rays.origin_z[k] = static_cast<float>(origin.z);
-                rays.direction_x[k] = static_cast<float>(d.x);
-                rays.direction_y[k] = static_cast<float>(d.y);
-                rays.direction_z[k] = static_cast<float>(d.z);
-                rays.near[k] = 0.0f;
-                rays.far[k] = std::numeric_limits<float>::infinity();
+                rays.aim(k, origin, d);
             }
-            rays.active = 0xffffu;
-            RayCaster::PacketHits hits;
             std::array<double, RayPacket::width> flux;
             flux.fill(each);
-            const auto is_black = [&](std::size_t k, const RayCaster::PacketHits& met) {
-                return !covered[k] && !(met.front >> k & 1u) &&
-                       !radiosity.two_sided()[met.primitive[k]];
-            };
-            closest_beyond_glass(radiosity.caster, rays, hits, [&](auto k, const auto& met) {
-                const auto share = double(radiosity.caster.transmittance(met.primitive[k]));
-                if (is_black(k, met)) lost.behind += flux[k] * (1 - share);
-                flux[k] *= share;
-            });
-            for (std::size_t k = 0; k < RayPacket::width; ++k) {
-                if (hits.primitive[k] == 0xffffffffu)
-                    lost.escaped += flux[k];
-                else if (is_black(k, hits))
-                    lost.behind += flux[k];
-            }
+            follow(radiosity, rays, flux, covered, lost);
         }
         return lost;
     });
@@ -158,11 +128,11 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
             send(radiosity.shot[id], open < 1.0);
         });
     }
-    const LuminaireLosses losses = luminaire_losses(radiosity, hash_bits(seed, 0x1a55u));
+    const LostLight losses = luminaire_losses(radiosity, hash_bits(seed, 0x1a55u));
     out.escaped = losses.escaped;
     out.absorbed_behind = losses.behind;
     if (senders.empty()) return out;
-    const Lost lost = follow(radiosity, senders, cumulative, hash_bits(seed, 0xba1u));
+    const LostLight lost = losses_of(radiosity, senders, cumulative, hash_bits(seed, 0xba1u));
     out.escaped += lost.escaped;
     out.absorbed_behind += lost.behind;
     return out;

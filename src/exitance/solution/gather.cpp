@@ -102,11 +102,11 @@ class Gatherer {
             bool reached = false;
             for (std::size_t i = 0; i < n; ++i) {
                 const GatherPoint& p = points_[begin + i];
+                factor[i] = point_polygon_factor(p.position, p.normal, corners);
                 // An emitter in the point's own plane does not reach it, whatever rounding says.
                 const Vec3 lifted = p.position + p.normal * clearance;
-                factor[i] = point_polygon_factor(lifted, p.normal, corners) > 0
-                                ? point_polygon_factor(p.position, p.normal, corners)
-                                : 0;
+                if (factor[i] > 0 && !(point_polygon_factor(lifted, p.normal, corners) > 0))
+                    factor[i] = 0;
                 reached = reached || factor[i] > 0;
             }
             if (!reached) continue;

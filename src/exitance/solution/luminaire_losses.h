@@ -4,17 +4,12 @@
 
 #include <cstdint>
 
-#include "exitance/solve/radiosity.h"
+#include "exitance/solution/lost_light.h"
 
 namespace exitance {
 
-/// Flux, weighted by luminance and group [flux_unit].
-struct LuminaireLosses {
-    double escaped = 0;  ///< that leaves the scene
-    double behind = 0;   ///< that meets black backs
-};
-
-/// Measured by rays in proportion to the light along them.
-LuminaireLosses luminaire_losses(const Radiosity& radiosity, std::uint64_t seed);
+/// Flux, weighted by luminance and group [flux_unit]; measured by rays in proportion to the light
+/// along them.
+LostLight luminaire_losses(const Radiosity& radiosity, std::uint64_t seed);
 
 }  // namespace exitance

@@ -9,12 +9,13 @@
 
 #include "exitance/run/options.h"
 #include "exitance/solution/gather.h"
+#include "exitance/solution/surface_probe.h"
 
 namespace exitance {
 
 struct ProbeOptions {
     std::string method = "interpolate";
-    double tolerance = 3e-3;
+    double tolerance = SurfaceProbeOptions{}.tolerance;
     int rays = 1024;
     std::uint64_t seed = 0;
 };

@@ -22,6 +22,25 @@ void Received::note_seen() {
         seen[i] = unblocked[i] > 0 ? light[i] / unblocked[i] : 1.0f;
 }
 
+void Received::add(std::span<const std::uint32_t> which, std::span<const ColumnEntry> entries,
+                   std::span<const float> row, float level, float magnitude) {
+    const std::size_t stride = row.size();
+    parallel_for(
+        which.size(),
+        [&](std::size_t i) {
+            const float factor = entries[i].factor;
+            if (!(factor > 0)) return;
+            const float f = entries[i].received();
+            const std::uint32_t r = which[i];
+            for (std::size_t c = 0; c < stride; ++c) rows[r * stride + c] += f * row[c];
+            light[r] += f * level;
+            unblocked[r] += factor * level;
+            const float noise = factor * magnitude * entries[i].deviation;
+            variance[r] += noise * noise;
+        },
+        1024);
+}
+
 namespace {
 
 // A node may stand for its descendants while that shifts irradiance by less than this share of the
@@ -47,21 +66,7 @@ struct Shot {
         entries.resize(which.size());
         rays += compute_column(caster, node.source, node.magnitude / tolerance, node.number,
                                receivers, which, options, entries);
-        const auto b = source.row(at, stride);
-        parallel_for(
-            which.size(),
-            [&](std::size_t i) {
-                const float factor = entries[i].factor;
-                if (factor <= 0) return;
-                const float f = entries[i].received();
-                const std::uint32_t r = which[i];
-                for (std::size_t c = 0; c < stride; ++c) received.rows[r * stride + c] += f * b[c];
-                received.light[r] += f * node.luminance;
-                received.unblocked[r] += factor * node.luminance;
-                const float noise = factor * node.magnitude * entries[i].deviation;
-                received.variance[r] += noise * noise;
-            },
-            1024);
+        received.add(which, entries, source.row(at, stride), node.luminance, node.magnitude);
     }
 
     // Near the source, or where it is uneven, receivers go on to the children.

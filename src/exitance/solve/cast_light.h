@@ -26,6 +26,10 @@ struct Received {
     std::span<const float> row(std::size_t i, std::size_t stride) const {
         return {&rows[i * stride], stride};
     }
+    /// Adds what receiver which[i] gets by entries[i] from a source of exitance `row`, whose
+    /// luminance is `level`; noise counts by its `magnitude`.
+    void add(std::span<const std::uint32_t> which, std::span<const ColumnEntry> entries,
+             std::span<const float> row, float level, float magnitude);
 };
 
 /// Adds the light of `source` to `received`. `which` lists receivers; entry i of `received` belongs

@@ -21,7 +21,6 @@ std::uint32_t number_of(std::size_t light) {
 std::uint64_t cast_suns(const Radiosity& radiosity, const Receivers& receivers,
                         std::span<const std::uint32_t> which, float tolerance,
                         const ColumnOptions& options, Received& received) {
-    const std::size_t stride = radiosity.columns.stride;
     std::uint64_t rays = 0;
     for (std::size_t l = 0; l < radiosity.scene.distant.size(); ++l) {
         const DistantLight& light = radiosity.scene.distant[l];
@@ -32,20 +31,7 @@ std::uint64_t cast_suns(const Radiosity& radiosity, const Receivers& receivers,
         std::vector<ColumnEntry> entries(which.size());
         rays += compute_sun_column(radiosity.caster, light, double(tolerance) / double(level),
                                    number_of(l), receivers, which, options, entries);
-        parallel_for(
-            which.size(),
-            [&](std::size_t i) {
-                const float factor = entries[i].factor, f = entries[i].received();
-                if (!(factor > 0)) return;
-                const std::uint32_t r = which[i];
-                for (std::size_t c = 0; c < stride; ++c)
-                    received.rows[r * stride + c] += f * colour[c];
-                received.light[r] += f * level;
-                received.unblocked[r] += factor * level;
-                const float noise = factor * level * entries[i].deviation;
-                received.variance[r] += noise * noise;
-            },
-            1024);
+        received.add(which, entries, colour, level, level);
     }
     return rays;
 }

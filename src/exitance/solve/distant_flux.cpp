@@ -93,12 +93,8 @@ double received_flux(const Radiosity& radiosity, std::size_t which, std::uint64_
                 const Way way = way_to(light, piece.normal, low_discrepancy(hash_bits(key, 2), i));
                 if (!(way.light > 0)) continue;
                 brought[k] = way.light;
-                const Vec3f o(place + piece.normal * caster.clearance() - caster.middle());
-                rays.origin_x[k] = o.x, rays.origin_y[k] = o.y, rays.origin_z[k] = o.z;
-                rays.direction_x[k] = static_cast<float>(way.direction.x);
-                rays.direction_y[k] = static_cast<float>(way.direction.y);
-                rays.direction_z[k] = static_cast<float>(way.direction.z);
-                rays.active |= 1u << k;
+                rays.aim(k, place + piece.normal * caster.clearance() - caster.middle(),
+                         way.direction);
             }
             if (rays.active == 0) continue;
             RayCaster::PacketHits hits;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/solve/luminaire_light.h"
 
-#include <cmath>
 #include <vector>
 
-#include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
 #include "exitance/transport/luminaire_column.h"
 
@@ -19,7 +17,6 @@ constexpr std::uint64_t luminaire_numbers = 0x1abULL;  // apart from those of el
 std::uint64_t cast_luminaires(const Radiosity& radiosity, const Receivers& receivers,
                               std::span<const std::uint32_t> which, float tolerance,
                               const ColumnOptions& options, Received& received) {
-    const std::size_t stride = radiosity.columns.stride;
     std::vector<ColumnEntry> entries(which.size());
     std::uint64_t rays = 0;
     for (std::size_t l = 0; l < radiosity.luminaires.size(); ++l) {
@@ -30,21 +27,7 @@ std::uint64_t cast_luminaires(const Radiosity& radiosity, const Receivers& recei
         rays += compute_luminaire_column(radiosity.caster, radiosity.luminaires[l],
                                          double(tolerance) / double(level), number, receivers,
                                          which, options, entries);
-        parallel_for(
-            which.size(),
-            [&](std::size_t i) {
-                const float factor = entries[i].factor;
-                if (!(factor > 0)) return;
-                const float f = entries[i].received();
-                const std::uint32_t r = which[i];
-                for (std::size_t c = 0; c < stride; ++c)
-                    received.rows[r * stride + c] += f * colour[c];
-                received.light[r] += f * level;
-                received.unblocked[r] += factor * level;
-                const float noise = factor * level * entries[i].deviation;
-                received.variance[r] += noise * noise;
-            },
-            1024);
+        received.add(which, entries, colour, level, level);
     }
     return rays;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/math/polygon.h"
 #include "exitance/run/random.h"
 #include "exitance/visibility/exposure.h"
 
@@ -110,9 +111,7 @@ class Refinement {
     bool is_small(const Element& element) const {
         if (element.area > options_.min_area) return false;
         const auto corners = radiosity_.mesh.corners(element);
-        double longest = 0;
-        for (std::uint32_t i = 0; i < element.count; ++i)
-            longest = std::max(longest, length(corners[(i + 1) % element.count] - corners[i]));
+        const double longest = longest_side({corners.data(), element.count});
         const double square = std::min(longest * longest, longest_aspect * double(element.area));
         return square <= 2 * double(options_.min_area);
     }
@@ -271,7 +270,7 @@ class Refinement {
             if (lit[k]) continue;
             const std::size_t v = first_new + k;
             const Receivers& all = radiosity_.receivers;
-            rest.add({all.x[v], all.y[v], all.z[v]}, {all.nx[v], all.ny[v], all.nz[v]}, all.key[v]);
+            rest.add(Vec3(all.point(v)), Vec3(all.normal(v)), all.key[v]);
             vertices.push_back(VertexId(v));
         }
         lit_.reset(rest.size(), radiosity_.columns.stride);

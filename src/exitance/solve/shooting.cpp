@@ -50,9 +50,9 @@ Shooting::Shooting(Radiosity& radiosity, const ShootingOptions& options)
 }
 
 bool Shooting::step() {
-    if (!emitted_) {
+    if (!radiosity_.emission_shot) {
         shoot_emission();
-        emitted_ = radiosity_.emission_shot = true;
+        radiosity_.emission_shot = true;
         return true;
     }
     if (options_.adaptive && !refined_ && unshot() <= refine_at * enough()) {
@@ -357,7 +357,7 @@ float Shooting::tolerance() const {
 }
 
 double Shooting::unshot() const {
-    if (!emitted_) return 1.0;
+    if (!radiosity_.emission_shot) return 1.0;
     return radiosity_.emitted_flux() > 0 ? unshot_flux_ / radiosity_.emitted_flux() : 0.0;
 }
 
@@ -371,14 +371,14 @@ double Shooting::enough() const {
 }
 
 double Shooting::next_shot() const {
-    if (!emitted_) return 1.0;
+    if (!radiosity_.emission_shot) return 1.0;
     const double flux = radiosity_.emitted_flux();
     return flux > 0 ? static_cast<double>(brightest().moved) / flux : 0.0;
 }
 
 Progress Shooting::progress() const {
     Progress out;
-    out.phase = emitted_ ? "shooting" : "direct";
+    out.phase = radiosity_.emission_shot ? "shooting" : "direct";
     out.fraction_left = unshot();
     out.shots = shots_;
     out.rays = rays_;

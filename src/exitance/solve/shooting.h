@@ -76,7 +76,7 @@ class Shooting final : public Solver {
     Radiosity& radiosity_;
     ShootingOptions options_;
     std::vector<FaceId> emitters_;  ///< brightest first
-    bool emitted_ = false, refined_ = false;
+    bool refined_ = false;
 
     // Reflected light of a patch as a weighted sum over vertices, rebuilt when the mesh changes.
     std::vector<std::uint32_t> weight_begin_, weight_vertex_;

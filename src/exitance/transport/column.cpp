@@ -8,23 +8,19 @@
 #include "exitance/formfactor/point_polygon_block.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/transport/ray_count.h"
 #include "exitance/visibility/visible_fraction.h"
 
 namespace exitance {
 
 namespace {
 
-// Stratified samples of a penumbra miss by about n^-3/4 / 2 of the contribution c (in units of the
-// tolerance): n = (2 c)^4/3 brings that to a quarter of the tolerance. Fainter sources get one ray:
-// their errors are independent and average out over the many of them. Half of the rays, at most 64,
-// find out whether there is a penumbra at all: what hides a tenth of the source must not be missed.
+// Half of the rays, at most 64, find out whether there is a penumbra at all: what hides a tenth of
+// the source must not be missed.
 RayBudget budget_for(const float* factors, std::size_t size, float brightness) {
     RayBudget budget;
     for (std::size_t r = 0; r < size; ++r) {
-        const float contribution = factors[r] * brightness;
-        const float wanted =
-            contribution > 0.5f ? std::ceil(std::pow(2.0f * contribution, 4.0f / 3.0f)) : 1.0f;
-        const float most = std::clamp(wanted, 1.0f, 256.0f);
+        const float most = rays_for(factors[r] * brightness);
         budget.most[r] = static_cast<std::uint16_t>(most);
         budget.probe[r] = factors[r] > 0.0f
                               ? static_cast<std::uint8_t>(std::clamp(most / 2.0f, 1.0f, 64.0f))

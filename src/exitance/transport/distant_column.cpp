@@ -11,6 +11,7 @@
 #include "exitance/math/frame.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/transport/ray_count.h"
 
 namespace exitance {
 
@@ -222,20 +223,8 @@ class Skyward {
     double all_ = 0, seen_ = 0, variance_ = 0;
 };
 
-Vec3 normal_of(const Receivers& receivers, std::uint32_t r) {
-    return Vec3(Vec3f{receivers.nx[r], receivers.ny[r], receivers.nz[r]});
-}
-
 Vec3f origin_of(const Receivers& receivers, std::uint32_t r, double clearance) {
-    return Vec3f(Vec3(Vec3f{receivers.x[r], receivers.y[r], receivers.z[r]}) +
-                 normal_of(receivers, r) * clearance);
-}
-
-// As many rays as column.cpp gives to a polygon: n = (2 c)^4/3 for a contribution of c tolerances.
-std::uint32_t rays_for(double contribution) {
-    if (contribution <= 0.5) return 1;
-    return static_cast<std::uint32_t>(
-        std::clamp(std::ceil(std::pow(2 * contribution, 4.0 / 3.0)), 1.0, 256.0));
+    return Vec3f(Vec3(receivers.point(r)) + Vec3(receivers.normal(r)) * clearance);
 }
 
 }  // namespace
@@ -251,11 +240,12 @@ std::uint64_t compute_sun_column(const RayCaster& caster, const DistantLight& su
         std::uint64_t count = 0;
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t r = which[i];
-            const Vec3 normal = normal_of(receivers, r);
+            const Vec3 normal(receivers.normal(r));
             const double light = sun.irradiance * std::max(0.0, dot(sun.direction, normal));
             entries[i] = {static_cast<float>(light), 1.0f, 0.0f};
             if (!(light > 0)) continue;
-            const std::uint32_t most = radius > 0 ? rays_for(light / tolerance) : 1;
+            const auto most =
+                radius > 0 ? static_cast<std::uint32_t>(rays_for(light / tolerance)) : 1u;
             std::uint32_t goal = std::clamp(most / 2, 1u, 64u), samples = 0;
             SkyRays rays(caster, origin_of(receivers, r, caster.clearance()));
             const std::uint64_t key = hash_bits(options.seed, number, receivers.key[r]);
@@ -289,8 +279,7 @@ std::uint64_t compute_sun_column(const RayCaster& caster, const DistantLight& su
             count += rays.count;
             if (!(all > 0)) continue;
             entries[i].visible = static_cast<float>(seen / all);
-            if (least < brightest)
-                entries[i].deviation = static_cast<float>(0.5 * std::pow(double(samples), -0.75));
+            if (least < brightest) entries[i].deviation = penumbra_deviation(samples);
         }
         cast.fetch_add(count, std::memory_order_relaxed);
     });
@@ -308,7 +297,7 @@ std::uint64_t compute_sky_column(const RayCaster& caster, const SkySource& sky, 
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t r = which[i];
             SkyRays rays(caster, origin_of(receivers, r, caster.clearance()));
-            Skyward receiver(sky, normal_of(receivers, r), tolerance,
+            Skyward receiver(sky, Vec3(receivers.normal(r)), tolerance,
                              hash_bits(options.seed, number, receivers.key[r]), options.occlusion,
                              rays);
             receiver.run(entries[i], bands.subspan(i * n, n));

@@ -8,6 +8,7 @@
 
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/transport/ray_count.h"
 
 namespace exitance {
 
@@ -34,13 +35,7 @@ class Rays {
 
     /// `from` and `to` relative to the middle of the scene, both clear of surfaces.
     void add(const Vec3& from, const Vec3& to, double weight, Visibility& receiver) {
-        packet_.origin_x[filled_] = static_cast<float>(from.x);
-        packet_.origin_y[filled_] = static_cast<float>(from.y);
-        packet_.origin_z[filled_] = static_cast<float>(from.z);
-        packet_.direction_x[filled_] = static_cast<float>(to.x - from.x);
-        packet_.direction_y[filled_] = static_cast<float>(to.y - from.y);
-        packet_.direction_z[filled_] = static_cast<float>(to.z - from.z);
-        packet_.active |= 1u << filled_;
+        packet_.aim(filled_, from, to - from);
         weight_[filled_] = weight;
         receiver_[filled_] = &receiver;
         if (++filled_ == width) flush();
@@ -76,13 +71,6 @@ class Rays {
     std::array<Visibility*, width> receiver_{};
 };
 
-// As many rays as column.cpp gives to a polygon: n = (2 c)^4/3 for a contribution of c tolerances.
-std::uint32_t rays_for(double contribution) {
-    if (contribution <= 0.5) return 1;
-    return static_cast<std::uint32_t>(
-        std::clamp(std::ceil(std::pow(2 * contribution, 4.0 / 3.0)), 1.0, 256.0));
-}
-
 }  // namespace
 
 std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireSource& source,
@@ -104,12 +92,13 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
         LuminaireSource::View view;
         for (std::size_t i = 0; i < n; ++i) {
             const std::uint32_t r = which[begin + i];
-            normals[i] = Vec3(Vec3f{receivers.nx[r], receivers.ny[r], receivers.nz[r]});
-            points[i] = Vec3(Vec3f{receivers.x[r], receivers.y[r], receivers.z[r]}) + middle;
+            normals[i] = Vec3(receivers.normal(r));
+            points[i] = Vec3(receivers.point(r)) + middle;
             const double light = source.irradiance(points[i], normals[i]);
             entries[begin + i] = {static_cast<float>(light), 1.0f, 0.0f};
             if (!(light > 0)) continue;
-            most[i] = source.is_point() ? 1 : rays_for(light / tolerance);
+            most[i] =
+                source.is_point() ? 1 : static_cast<std::uint32_t>(rays_for(light / tolerance));
             goal[i] = std::clamp(most[i] / 2, 1u, 64u);
         }
         // First the probes; then, where they disagreed, twice as many as so far until `most`.
@@ -142,9 +131,7 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
             if (!(v.all > 0)) continue;
             ColumnEntry& entry = entries[begin + i];
             entry.visible = static_cast<float>(v.seen / v.all);
-            if (v.partly())
-                entry.deviation =
-                    static_cast<float>(0.5 * std::pow(static_cast<double>(v.samples), -0.75));
+            if (v.partly()) entry.deviation = penumbra_deviation(v.samples);
         }
         rays.fetch_add(packets.count, std::memory_order_relaxed);
     });

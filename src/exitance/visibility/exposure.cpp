@@ -17,24 +17,16 @@ void find_exposed(const RayCaster& caster, std::span<const char> two_sided,
     parallel_blocks(exposed.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::size_t r = first + i;
-            const Vec3 normal(receivers.nx[r], receivers.ny[r], receivers.nz[r]);
-            const Vec3 origin =
-                Vec3(receivers.x[r], receivers.y[r], receivers.z[r]) + normal * clearance;
+            const Vec3 normal(receivers.normal(r));
+            const Vec3 origin = Vec3(receivers.point(r)) + normal * clearance;
             const Frame frame(normal);
             RayPacket rays;
+            rays.near.fill(0.0f), rays.far.fill(std::numeric_limits<float>::infinity());
             for (std::uint32_t k = 0; k < RayPacket::width; ++k) {
                 const Vec3 d = frame.to_world(
                     cosine_hemisphere(low_discrepancy(hash_bits(receivers.key[r], 0xe7u), k)));
-                rays.origin_x[k] = static_cast<float>(origin.x);
-                rays.origin_y[k] = static_cast<float>(origin.y);
-                rays.origin_z[k] = static_cast<float>(origin.z);
-                rays.direction_x[k] = static_cast<float>(d.x);
-                rays.direction_y[k] = static_cast<float>(d.y);
-                rays.direction_z[k] = static_cast<float>(d.z);
-                rays.near[k] = 0.0f;
-                rays.far[k] = std::numeric_limits<float>::infinity();
+                rays.aim(k, origin, d);
             }
-            rays.active = 0xffffu;
             RayCaster::PacketHits hits;
             closest_beyond_glass(caster, rays, hits, [](auto, const auto&) {});
             int backs = 0;

@@ -27,6 +27,17 @@ struct alignas(64) RayPacket {
     std::array<float, width> origin_x, origin_y, origin_z, near;
     std::array<float, width> direction_x, direction_y, direction_z, far;
     std::uint32_t active = 0;
+
+    /// Makes ray `lane` active; `near` and `far` stay as they are.
+    void aim(std::size_t lane, const Vec3& origin, const Vec3& direction) {
+        origin_x[lane] = static_cast<float>(origin.x);
+        origin_y[lane] = static_cast<float>(origin.y);
+        origin_z[lane] = static_cast<float>(origin.z);
+        direction_x[lane] = static_cast<float>(direction.x);
+        direction_y[lane] = static_cast<float>(direction.y);
+        direction_z[lane] = static_cast<float>(direction.z);
+        active |= 1u << lane;
+    }
 };
 
 /// Polygons that block light. Threads may query one caster at once.

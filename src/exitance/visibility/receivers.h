@@ -19,6 +19,8 @@ struct Receivers {
     std::vector<std::uint32_t> key;
 
     std::size_t size() const { return x.size(); }
+    Vec3f point(std::size_t i) const { return {x[i], y[i], z[i]}; }
+    Vec3f normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
     void add(const Vec3& point, const Vec3& normal, std::uint32_t pattern) {
         x.push_back(static_cast<float>(point.x));
         y.push_back(static_cast<float>(point.y));

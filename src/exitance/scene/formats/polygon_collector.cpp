@@ -37,15 +37,6 @@ std::vector<Corner> placed(std::span<const Corner> corners, const Transform& pla
     return out;
 }
 
-bool is_convex(std::span<const Vec3> c) {
-    const Vec3 normal = vector_area(c);
-    for (std::size_t i = 0; i < c.size(); ++i) {
-        const Vec3 &a = c[i], &b = c[(i + 1) % c.size()], &d = c[(i + 2) % c.size()];
-        if (!(dot(cross(b - a, d - b), normal) > 0)) return false;
-    }
-    return true;
-}
-
 }  // namespace
 
 std::size_t PolygonCollector::PointHash::operator()(const std::array<double, 6>& key) const {
@@ -111,7 +102,7 @@ void PolygonCollector::add_outline(std::vector<Corner> corners, const Place& pla
                           "a vertex normal more than 45° from its face is left out, as if averaged "
                           "over a box's corner");
     }
-    if (corners.size() == 3 || (corners.size() == 4 && is_convex(points))) {
+    if (corners.size() == 3 || (corners.size() == 4 && is_strictly_convex(points))) {
         budget_.spend_polygons(1, [&] { return place; });
         add_polygon(corners, surface_, place);
         return;
