@@ -14,6 +14,11 @@ std::string human_number(double value) {
                                       : fmt::format("{:.4g}", value + 0.0);  // −0 becomes 0
 }
 
+std::string human_percent(double fraction) {
+    const double value = 100 * fraction;
+    return std::abs(value) < 99.5 ? fmt::format("{:.2g} %", value) : fmt::format("{:.0f} %", value);
+}
+
 std::string human_quantity(double value, const std::string& unit) {
     return human_number(value) + (unit.empty() ? "" : " ") + unit;
 }

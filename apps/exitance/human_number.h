@@ -12,6 +12,9 @@ std::string human_count(double value);
 /// Four significant digits, whole numbers in full: "0.01234", "12.31", "39789".
 std::string human_number(double value);
 
+/// Two digits, or whole numbers in full: 0.021 as "2.1 %", 1 as "100 %".
+std::string human_percent(double fraction);
+
 /// A number and the unit, if there is one: "12.31 lm".
 std::string human_quantity(double value, const std::string& unit);
 

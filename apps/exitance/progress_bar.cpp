@@ -69,10 +69,10 @@ std::string bar_line(const Progress& progress, std::size_t columns) {
     const double rate = progress.seconds > 0 ? double(progress.rays) / progress.seconds : 0;
     const std::string head = fmt::format("{:<10.10} ", progress.phase);
     std::string tail =
-        fmt::format(" {:3.0f} %  unshot {:.2g} %  {} shots  {} rays/s  {} vertices  ", 100 * done,
-                    100 * progress.fraction_left, progress.shots, human_count(rate),
+        fmt::format(" {:3.0f} %  unshot {}  {} shots  {} rays/s  {} vertices  ", 100 * done,
+                    human_percent(progress.fraction_left), progress.shots, human_count(rate),
                     human_count(double(progress.vertices)));
-    if (progress.error) tail += fmt::format("error {:.2g} %  ", 100 * *progress.error);
+    if (progress.error) tail += fmt::format("error {}  ", human_percent(*progress.error));
     tail += fmt::format("{:.0f} s", progress.seconds);
     // Head and tail are ASCII, so that bytes are columns.
     const std::size_t used = head.size() + cells;

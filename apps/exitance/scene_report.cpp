@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "exitance/scene/formats/general_geometry.h"
 #include "exitance/scene/groups.h"
@@ -60,7 +61,7 @@ SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
     problems_.insert(problems_.begin(), scene.warnings.begin(), scene.warnings.end());
     for (const Material& material : scene.materials) materials_.push_back({&material, 0, 0});
     const LightGroups groups = make_groups(scene, Grouping::file);
-    for (const LightGroup& group : groups.groups) groups_.push_back({group.name, 0, 0, 0, 0});
+    for (const LightGroup& group : groups.groups) groups_.push_back({.name = group.name});
     for (std::size_t s = 0; s < scene.surfaces.size(); ++s)
         if (scene.materials[scene.surfaces[s].material].emits())
             ++groups_[groups.group_of_surface[s]].surfaces;
@@ -86,6 +87,7 @@ SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
         flux_ += flux;
         ++lamp.luminaires;
     }
+    for (const std::uint32_t group : groups.group_of_distant) ++groups_[group].distant;
     bounds_ = scene.bounds();
 }
 
@@ -140,7 +142,8 @@ std::string SceneReport::materials_text() const {
                 fmt::format(", texture of {} × {}", m.reflectance_pattern.texture->picture().width,
                             m.reflectance_pattern.texture->picture().height);
         if (m.two_sided) out += ", two-sided";
-        if (!m.specular.empty()) out += fmt::format(", mirrors {:.3g}", luminance(m.specular));
+        if (!m.specular.empty() && luminance(m.specular) > 0)
+            out += fmt::format(", mirrors {:.3g}", luminance(m.specular));
         if (m.transmits())
             out += fmt::format(", transmits {:.3g}",
                                luminance(m.transmittance) + luminance(m.diffuse_transmittance));
@@ -157,21 +160,42 @@ std::string SceneReport::materials_text() const {
 }
 
 std::string SceneReport::light_text() const {
-    if (flux_ <= 0) return "\nLight: none\n";
+    if (flux_ <= 0 && scene_.distant.empty()) return "\nLight: none\n";
     const std::string unit = flux_unit(scene_.quantity);
-    std::string out = fmt::format("\nLight: {} in all, from {}\n", human_quantity(flux_, unit),
+    std::string out = fmt::format("\nLight: {}{}\n",
+                                  flux_ > 0 ? human_quantity(flux_, unit) + " in all, from " : "",
                                   plural(groups_.size(), "light group", "light groups"));
     for (std::size_t i = 0; i < groups_.size(); ++i) {
-        if (i == most_lines)
-            return out + fmt::format("  … and {} more\n", groups_.size() - most_lines);
+        if (i == most_lines) {
+            out += fmt::format("  … and {} more\n", groups_.size() - most_lines);
+            break;
+        }
         const LampFacts& g = groups_[i];
         std::string from;
+        const auto add = [&](const std::string& part) {
+            from += (from.empty() ? "" : " and ") + part;
+        };
         if (g.surfaces > 0)
-            from =
-                fmt::format("{:.4g} m² of {}", g.area, plural(g.surfaces, "surface", "surfaces"));
-        if (g.luminaires > 0)
-            from += (from.empty() ? "" : " and ") + plural(g.luminaires, "luminaire", "luminaires");
-        out += fmt::format("  {}: {} from {}\n", g.name, human_quantity(g.flux, unit), from);
+            add(fmt::format("{:.4g} m² of {}", g.area, plural(g.surfaces, "surface", "surfaces")));
+        if (g.luminaires > 0) add(plural(g.luminaires, "luminaire", "luminaires"));
+        if (g.distant > 0) add("afar");
+        out += fmt::format("  {}: {}from {}\n", g.name,
+                           g.flux > 0 ? human_quantity(g.flux, unit) + " " : "", from);
+    }
+    return out + distant_text();
+}
+
+std::string SceneReport::distant_text() const {
+    const std::string unit = irradiance_unit(scene_.quantity);
+    std::string out;
+    for (const DistantLight& light : scene_.distant) {
+        if (light.kind == DistantLight::Kind::sky)
+            out += fmt::format("Sky {}: {} on open ground\n", light.name,
+                               human_quantity(horizontal_irradiance(light), unit));
+        else
+            out += fmt::format("Sun {}: {} across its rays, from {}, {:.3g}° wide\n", light.name,
+                               human_quantity(light.irradiance, unit), point_text(light.direction),
+                               light.diameter * 180 / std::numbers::pi);
     }
     return out;
 }

@@ -22,7 +22,7 @@ struct MaterialFacts {
 struct LampFacts {
     std::string name;
     double area = 0, flux = 0;  ///< of both sides where both emit [m², flux_unit]
-    std::uint32_t surfaces = 0, luminaires = 0;
+    std::uint32_t surfaces = 0, luminaires = 0, distant = 0;
 };
 
 /// Refers to the scene it is given.
@@ -38,6 +38,7 @@ class SceneReport {
     std::string geometry_text() const;
     std::string materials_text() const;
     std::string light_text() const;
+    std::string distant_text() const;
     std::string views_text() const;
     std::string problems_text() const;
 

@@ -96,13 +96,14 @@ std::string SceneReport::json() const {
                                          pattern->texture->picture().height};
     }
     Json& groups = out["groups"] = Json::array();
-    if (flux_ > 0)
+    if (flux_ > 0 || !scene_.distant.empty())
         for (const LampFacts& group : groups_)
             groups.push_back({{"name", group.name},
                               {"flux", group.flux},
                               {"area", group.area},
                               {"surfaces", group.surfaces},
-                              {"luminaires", group.luminaires}});
+                              {"luminaires", group.luminaires},
+                              {"distant", group.distant}});
     out["cameras"] = json_of(scene_.cameras);
     out["grids"] = json_of(scene_.grids);
     Json& settings = out["settings"] = Json::object();

@@ -34,9 +34,9 @@ std::string SolutionReport::text() const {
         flux(energy.emitted), flux(energy.absorbed), flux(energy.absorbed_behind),
         flux(energy.escaped), flux(energy.unshot));
     if (solution_.error)
-        out += fmt::format(
-            "Error: {:.2g} % ± {:.2g} % (RMS of irradiance over its mean, {} held-out points)\n",
-            100 * solution_.error->rms, 100 * solution_.error->confidence, solution_.error->points);
+        out += fmt::format("Error: {} ± {} (RMS of irradiance over its mean, {} held-out points)\n",
+                           human_percent(solution_.error->rms),
+                           human_percent(solution_.error->confidence), solution_.error->points);
     else
         out += "Error: not estimated\n";
 

@@ -18,21 +18,16 @@ std::string group_names(const Solution& solution) {
     return out.substr(2);
 }
 
-std::string percent(double fraction) {
-    const double value = 100 * fraction;
-    return std::abs(value) < 99.5 ? fmt::format("{:.2g} %", value) : fmt::format("{:.0f} %", value);
-}
-
 std::string energy_line(const Solution& solution) {
     const EnergyBalance& energy = solution.energy;
     const std::string unit = flux_unit(solution.quantity);
     if (energy.emitted <= 0) return "nothing is emitted";
-    const auto share = [&](double part) { return percent(part / energy.emitted); };
+    const auto share = [&](double part) { return human_percent(part / energy.emitted); };
     return fmt::format(
         "{} emitted = {} absorbed + {} absorbed by backs + {} escaped + {} unshot; balance off by "
         "{}",
         human_quantity(energy.emitted, unit), share(energy.absorbed), share(energy.absorbed_behind),
-        share(energy.escaped), share(energy.unshot), percent(std::abs(energy.imbalance())));
+        share(energy.escaped), share(energy.unshot), human_percent(std::abs(energy.imbalance())));
 }
 
 }  // namespace
@@ -56,8 +51,8 @@ std::string summary(const Solution& solution, const std::filesystem::path& file,
     if (solution.error)
         out +=
             fmt::format("  error   {} ± {} (RMS of irradiance over its mean, {} held-out points)\n",
-                        percent(solution.error->rms), percent(solution.error->confidence),
-                        solution.error->points);
+                        human_percent(solution.error->rms),
+                        human_percent(solution.error->confidence), solution.error->points);
     const auto count = [&](const char* name) {
         const auto found = solution.counters.find(name);
         return human_count(found == solution.counters.end() ? 0 : found->second);

@@ -204,7 +204,8 @@ TEST(GeneralGeometry, ColladaHierarchyCameraAndLight) {
 <xfov>60</xfov><aspect_ratio>2</aspect_ratio><znear>1</znear><zfar>100</zfar>
 </perspective></technique_common></optics></camera></library_cameras>
 <library_lights><light id="lamp" name="lamp"><technique_common><point><color>2 2 2</color></point>
-</technique_common></light></library_lights>
+</technique_common></light><light id="sun" name="sun"><technique_common><directional>
+<color>5 5 5</color></directional></technique_common></light></library_lights>
 <library_effects><effect id="oak-fx"><profile_COMMON><technique sid="common"><lambert>
 <diffuse><color>0.5 0.25 0.125 1</color></diffuse></lambert></technique></profile_COMMON></effect>
 </library_effects>
@@ -224,6 +225,7 @@ TEST(GeneralGeometry, ColladaHierarchyCameraAndLight) {
 </instance_geometry></node></node>
 <node id="eye" name="eye"><translate>0 0 300</translate><instance_camera url="#cam"/></node>
 <node id="bulb" name="bulb"><translate>0 0 200</translate><instance_light url="#lamp"/></node>
+<node id="day" name="day"><instance_light url="#sun"/></node>
 </visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
 )"));
@@ -240,6 +242,9 @@ TEST(GeneralGeometry, ColladaHierarchyCameraAndLight) {
     ASSERT_EQ(scene.luminaires.size(), 1U);
     expect_vector(scene.luminaires[0].position, {0, 2, 0});
     EXPECT_NEAR(scene.luminaires[0].flux(), 8 * std::numbers::pi, rounding);
+    ASSERT_EQ(scene.distant.size(), 1U);
+    expect_vector(scene.distant[0].direction, {0, 1, 0});  // it shines along −z, now −y
+    EXPECT_NEAR(scene.distant[0].irradiance, 5, rounding);
     EXPECT_TRUE(warned(scene, "no unit"));
 }
 

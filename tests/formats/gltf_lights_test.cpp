@@ -66,11 +66,25 @@ TEST(GltfLights, SpotsFallBetweenTheirCones) {
     EXPECT_NEAR(lamp.flux(), 2000 * pi * (1 - i + (i - o) / 3), 2e-3 * lamp.flux());
 }
 
-TEST(GltfLights, WhatIsNotReadIsNamed) {
-    const Scene scene = parse_gltf("t.glb", with_light({{"type", "directional"}}).bytes());
+TEST(GltfLights, DirectionalOnesShineFromInfinity) {
+    const Scene scene = parse_gltf(
+        "t.glb",
+        with_light({{"type", "directional"}, {"intensity", 50000}, {"color", {1, 0.5, 0.25}}})
+            .bytes());
     EXPECT_TRUE(scene.luminaires.empty());
-    ASSERT_EQ(scene.warnings.size(), 1U);
-    EXPECT_NE(scene.warnings[0].what.find("'lamp'"), std::string::npos);
+    EXPECT_TRUE(scene.warnings.empty());
+    EXPECT_EQ(scene.quantity, Quantity::photometric);
+    ASSERT_EQ(scene.distant.size(), 1U);
+    const DistantLight& sun = scene.distant[0];
+    EXPECT_EQ(sun.name, "lamp");
+    EXPECT_NEAR(length(sun.direction - Vec3{0, 1, 0}), 0, 1e-12);  // it shines down
+    EXPECT_EQ(sun.diameter, 0);
+    const std::array<double, 3> colour{1, 0.5, 0.25};
+    for (std::size_t b = 0; b < 3; ++b)
+        EXPECT_NEAR(sun.irradiance * sun.colour[b], 50000 * colour[b], 1e-8);
+}
+
+TEST(GltfLights, WhatHasNoMeaningIsRefused) {
     expect_refused(
         [] {
             parse_gltf("t.glb", with_light({{"type", "laser"}}).bytes());

@@ -146,6 +146,22 @@ TEST(Rad, LampsEmitPiTimesTheirRadianceFromTheirFront) {
     EXPECT_NEAR(flux, pi * 4 * pi, pi * 4 * pi * 5e-5);  // of the true sphere, factor to 1e-4
 }
 
+TEST(Rad, SourcesAreDiscsAtInfinity) {
+    const Scene scene =
+        parse("void light solar 0 0 3 6e6 6e6 3e6\nsolar source sun 0 0 4 0 3 4 .5\n");
+    EXPECT_EQ(scene.quantity, Quantity::radiometric);
+    ASSERT_EQ(scene.distant.size(), 1U);
+    const DistantLight& sun = scene.distant[0];
+    EXPECT_EQ(sun.name, "sun");
+    EXPECT_NEAR(length(sun.direction - Vec3{0, 0.6, 0.8}), 0, 1e-12);
+    EXPECT_NEAR(sun.diameter, 0.5 * pi / 180, 1e-12);
+    const double sine = std::sin(0.25 * pi / 180);
+    EXPECT_NEAR(sun.irradiance * sun.colour[0], 6e6 * pi * sine * sine, 1e-8);
+    EXPECT_NEAR(sun.irradiance * sun.colour[2], 3e6 * pi * sine * sine, 1e-8);
+    expect_refused([] { parse("void light m 0 0 3 1 1 1\nm source s 0 0 4 0 0 0 1\n"); }, "t.rad:2",
+                   "direction");
+}
+
 TEST(Rad, TypesThatAreTakenAsSomethingElseAreTold) {
     const Scene scene = parse(
         "void colorpict stripes 7 red green blue s.hdr . u v 0 0\n"
@@ -155,7 +171,8 @@ TEST(Rad, TypesThatAreTakenAsSomethingElseAreTold) {
         "cloth polygon p 0 0 9 0 0 0 1 0 0 1 1 0\nblind polygon p 0 0 9 0 0 0 1 0 0 1 1 0\n"
         "both polygon p 0 0 9 0 0 1 1 0 1 1 1 1\nstripes polygon p 0 0 9 0 0 1 1 0 1 1 1 1\n"
         "void mist fog 0 0 0\nfog sphere s 0 0 4 0 0 0 1\n"
-        "void source sun 0 0 4 0 0 1 .53\nvoid instance chair 1 chair.oct 0 0\n");
+        "void glow blue 0 0 4 1 1 2 0\nblue source sky 0 0 4 0 0 1 180\nvoid instance chair 1 "
+        "chair.oct 0 0\n");
     EXPECT_EQ(scene.polygons.size(), 4U);
     expect_bands(scene.material(scene.polygons[0]).reflectance, 0.54, 0.45, 0.36);
     expect_bands(scene.material(scene.polygons[1]).diffuse_transmittance, 0.1, 0.1, 0.1);
@@ -163,7 +180,7 @@ TEST(Rad, TypesThatAreTakenAsSomethingElseAreTold) {
     EXPECT_EQ(scene.material(scene.polygons[3]).name, "void");
     for (const char* words :
          {"colorpict 'stripes' is not applied", "mixfunc 'both' is not applied", "of type plasfunc",
-          "of type BSDF", "of type mist", "source 'sun'", "instance 'chair'",
+          "of type BSDF", "of type mist", "source 'sky'", "instance 'chair'",
           "no surface (antimatter or mist)", "without material is black"})
         EXPECT_EQ(warned(scene, words), 1U) << words;
 }

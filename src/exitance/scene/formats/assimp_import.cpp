@@ -188,6 +188,7 @@ ImportedLight light_of(const aiLight& from) {
     to.name = from.mName.C_Str();
     if (from.mType == aiLightSource_POINT) to.kind = ImportedLight::Kind::point;
     if (from.mType == aiLightSource_SPOT) to.kind = ImportedLight::Kind::spot;
+    if (from.mType == aiLightSource_DIRECTIONAL) to.kind = ImportedLight::Kind::directional;
     to.position = vector_of(from.mPosition);
     to.direction = vector_of(from.mDirection);
     to.colour = colour_of(from.mColorDiffuse);

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "exitance/scene/builtin_photometry.h"
 #include "exitance/scene/closed_bodies.h"
 #include "exitance/scene/formats/assimp_import.h"
 #include "exitance/scene/formats/contained_call.h"
+#include "exitance/scene/formats/imported_lights.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/polygon_collector.h"
 #include "exitance/scene/formats/source_text.h"
@@ -114,7 +114,8 @@ class GeneralGeometry {
         material_index_.assign(from_.materials.size(), std::nullopt);
         for (std::size_t i = 0; i < from_.nodes.size(); ++i) read_node(i);
         for (const ImportedCamera& camera : from_.cameras) read_camera(camera);
-        for (const ImportedLight& light : from_.lights) read_light(light);
+        for (const ImportedLight& light : from_.lights)
+            add_imported_light(scene_, light, placing_of(light.name), place_, warnings_);
         if (scene_.polygons.empty()) warn("empty", "there are no polygons in the file");
         scene_.warnings = warnings_.take();
         close_bodies(scene_);
@@ -329,51 +330,6 @@ class GeneralGeometry {
         }
         to.fov_y = 2 * std::atan(std::tan(from.fov_x / 2) / aspect) * 180 / pi;
         scene_.cameras.push_back(std::move(to));
-    }
-
-    void read_light(const ImportedLight& from) {
-        if (from.kind == ImportedLight::Kind::other) {
-            warn("light", fmt::format("light {} is neither a point nor a spot and is left out",
-                                      in_quotes(from.name)));
-            return;
-        }
-        const Transform placing = placing_of(from.name);
-        Luminaire to;
-        to.name = from.name.empty() ? fmt::format("light {}", scene_.luminaires.size() + 1)
-                                    : as_utf8(from.name);
-        to.place = place_;
-        to.position = placing.point(from.position);
-        const Spectrum colour(from.colour.begin(), from.colour.end());
-        const double strength = luminance(colour);
-        const bool sound = std::all_of(colour.begin(), colour.end(),
-                                       [](double c) { return c >= 0 && c <= limits::exitance; });
-        if (!sound || !(strength > 0) || !is_finite(to.position)) {
-            warn("dark light",
-                 fmt::format("light {} does not shine and is left out", in_quotes(from.name)));
-            return;
-        }
-        to.multiplier = strength;
-        for (std::size_t b = 0; b < 3; ++b) to.colour[b] = colour[b] / strength;
-        const double field = from.outer_cone * 180 / pi;
-        if (from.kind == ImportedLight::Kind::point || !(field > 0 && field <= 180)) {
-            to.photometry = std::make_shared<const Photometry>(isotropic_photometry());
-        } else {
-            aim(to, placing.vector(from.direction));
-            const double beam = std::clamp(from.inner_cone * 180 / pi, 0.1 * field, 0.9 * field);
-            to.photometry = std::make_shared<const Photometry>(spot_photometry(beam, field));
-        }
-        warn("light unit", fmt::format("the strength of light {} has no unit in the file; it is "
-                                       "taken as its intensity",
-                                       in_quotes(to.name)));
-        scene_.luminaires.push_back(std::move(to));
-    }
-
-    static void aim(Luminaire& luminaire, const Vec3& direction) {
-        const Vec3 nadir = normalized(direction);
-        if (!is_finite(nadir) || nadir == Vec3{}) return;
-        const Vec3 aside = std::abs(nadir.x) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 0, 1};
-        luminaire.nadir = nadir;
-        luminaire.c0 = normalized(aside - nadir * dot(aside, nadir));
     }
 
     Place place_;

@@ -62,7 +62,7 @@ class GltfReader {
           options_(options),
           resources_(path, model, json, options.most_bytes()),
           textures_(resources_, json, options, warner()),
-          lights_(scene_, resources_, json, warner()) {
+          lights_(scene_, resources_, json) {
         scene_.title = path.stem().string();
     }
 
@@ -73,7 +73,8 @@ class GltfReader {
         average_patterns();
         for (const Material& material : scene_.materials)
             if (material.emits()) scene_.quantity = Quantity::photometric;
-        if (!scene_.luminaires.empty()) scene_.quantity = Quantity::photometric;
+        if (!scene_.luminaires.empty() || !scene_.distant.empty())
+            scene_.quantity = Quantity::photometric;
         return std::move(scene_);
     }
 

@@ -47,14 +47,27 @@ Photometry cone_photometry(double inner, double outer) {
     return out;
 }
 
+/// A colour as its proportions, of luminance 1, and its luminance.
+struct Tint {
+    Spectrum colour{1, 1, 1};
+    double luminance = 1;
+};
+Tint tint_of(const JsonNode& colour) {
+    Tint out;
+    if (!colour) return out;
+    out.colour = colour.value->get<std::vector<double>>();
+    out.luminance = luminance(out.colour);
+    if (out.luminance > 0)
+        for (double& band : out.colour) band /= out.luminance;
+    return out;
+}
+
 }  // namespace
 
-GltfLights::GltfLights(Scene& scene, const GltfResources& resources, const JsonText& json,
-                       GltfTextures::Warn warn)
+GltfLights::GltfLights(Scene& scene, const GltfResources& resources, const JsonText& json)
     : scene_(scene),
       resources_(resources),
       json_(json),
-      warn_(std::move(warn)),
       point_(std::make_shared<const Photometry>(isotropic_photometry())) {}
 
 void GltfLights::add(std::size_t index, const std::string& name, const Transform& world) {
@@ -71,12 +84,7 @@ void GltfLights::add(std::size_t index, const std::string& name, const Transform
 void GltfLights::add_punctual(const JsonNode& light, const std::string& name,
                               const Transform& world) {
     const std::string& type = light.required("type").string();
-    if (type == "directional") {
-        warn_(light.path, fmt::format("the directional light '{}' is not read; point and spot "
-                                      "lights are",
-                                      name));
-        return;
-    }
+    if (type == "directional") return add_directional(light, name, world);
     if (type != "point" && type != "spot")
         light.required("type").expected("point, spot or directional");
     Luminaire luminaire;
@@ -96,6 +104,29 @@ void GltfLights::add_punctual(const JsonNode& light, const std::string& name,
         luminaire.photometry = std::make_shared<const Photometry>(cone_photometry(inner, outer));
     }
     place(std::move(luminaire), light.member("color"), number(light, "intensity", 1), world);
+}
+
+// Shines along the node's −z, from infinity; its intensity is in lux across its rays.
+void GltfLights::add_directional(const JsonNode& light, const std::string& name,
+                                 const Transform& world) {
+    DistantLight out;
+    out.name = name;
+    out.place = json_.place(light.path);
+    out.direction = normalized(world.z);
+    if (!is_finite(out.direction) || out.direction == Vec3{})
+        throw Error(out.place, fmt::format("the node of the light '{}' has no direction, expected "
+                                           "a scale that is not zero",
+                                           name));
+    const Tint tint = tint_of(light.member("color"));
+    out.irradiance = number(light, "intensity", 1) * tint.luminance;
+    if (!(out.irradiance > 0)) return;
+    out.colour = tint.colour;
+    if (!(out.irradiance <= limits::exitance))
+        throw Error(
+            out.place,
+            fmt::format("found the irradiance {:g} in the light '{}', expected at most {:g}",
+                        out.irradiance, name, limits::exitance));
+    scene_.distant.push_back(std::move(out));
 }
 
 void GltfLights::add_ies(const JsonNode& placed, const std::string& name, const Transform& world) {
@@ -136,13 +167,10 @@ void GltfLights::place(Luminaire luminaire, const JsonNode& colour, double level
     luminaire.c0 = c0;
     if (world.determinant() < 0)
         luminaire.photometry = std::make_shared<const Photometry>(mirrored(*luminaire.photometry));
-    Spectrum rgb{1, 1, 1};
-    if (colour) rgb = colour.value->get<std::vector<double>>();
-    const double luminous = luminance(rgb);
-    if (!(luminous * level > 0)) return;
-    for (double& band : rgb) band /= luminous;
-    luminaire.colour = rgb;
-    luminaire.multiplier = level * luminous;
+    const Tint tint = tint_of(colour);
+    if (!(tint.luminance * level > 0)) return;
+    luminaire.colour = tint.colour;
+    luminaire.multiplier = level * tint.luminance;
     const double flux = luminaire.flux();
     if (!(flux <= limits::exitance))
         throw Error(luminaire.place,

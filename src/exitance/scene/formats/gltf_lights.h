@@ -5,7 +5,8 @@
 #include <map>
 
 #include "exitance/math/transform.h"
-#include "exitance/scene/formats/gltf_textures.h"
+#include "exitance/scene/formats/gltf_resources.h"
+#include "exitance/scene/formats/json_text.h"
 #include "exitance/scene/scene.h"
 
 namespace tinygltf {
@@ -17,21 +18,20 @@ namespace exitance {
 class GltfLights {
   public:
     /// Adds to `scene`.
-    GltfLights(Scene& scene, const GltfResources& resources, const JsonText& json,
-               GltfTextures::Warn warn);
+    GltfLights(Scene& scene, const GltfResources& resources, const JsonText& json);
 
     /// The lights that hang at node `index`, `name`, if any.
     void add(std::size_t index, const std::string& name, const Transform& world);
 
   private:
     void add_punctual(const JsonNode& light, const std::string& name, const Transform& world);
+    void add_directional(const JsonNode& light, const std::string& name, const Transform& world);
     void add_ies(const JsonNode& placed, const std::string& name, const Transform& world);
     void place(Luminaire luminaire, const JsonNode& colour, double level, const Transform& world);
 
     Scene& scene_;
     const GltfResources& resources_;
     const JsonText& json_;
-    GltfTextures::Warn warn_;
     std::map<std::size_t, std::shared_ptr<const Photometry>> photometry_;  ///< by light of the file
     std::shared_ptr<const Photometry> point_;
 };

@@ -49,7 +49,7 @@ struct ImportedCamera {
 };
 
 struct ImportedLight {
-    enum class Kind : std::uint32_t { point, spot, other };
+    enum class Kind : std::uint32_t { point, spot, directional, other };
     std::string name;  ///< that of its node
     Kind kind = Kind::other;
     Vec3 position, direction;

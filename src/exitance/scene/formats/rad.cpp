@@ -5,6 +5,7 @@
 
 #include <array>
 #include <map>
+#include <numbers>
 #include <unordered_map>
 
 #include "exitance/scene/closed_bodies.h"
@@ -201,15 +202,13 @@ class RadReader {
                 break;
             }
         const Modifier of = modifier(name, p.place);
-        if (p.type == "source" || p.type == "instance" || p.type == "mesh") {
-            warnings_.add(p.type + (p.type == "source" ? " " + p.name : ""), p.place,
-                          p.type == "source"
-                              ? fmt::format("the distant source {} (sun or sky) is not read",
-                                            in_quotes(p.name))
-                              : fmt::format("the {} {} is in a compiled file and not read", p.type,
-                                            in_quotes(p.name)));
+        if (p.type == "instance" || p.type == "mesh") {
+            warnings_.add(p.type, p.place,
+                          fmt::format("the {} {} is in a compiled file and not read", p.type,
+                                      in_quotes(p.name)));
             return;
         }
+        if (p.type == "source") return source(p, of);
         if (of.nothing) {
             warnings_.add("nothing", p.place,
                           fmt::format("{} {} is no surface (antimatter or mist) and left out",
@@ -253,6 +252,34 @@ class RadReader {
         bool out = false;
         for (const Moving& moving : movings_) out ^= moving.invert;
         return out;
+    }
+
+    // A disc of uniform radiance at infinity: E = π L sin²(θ/2) across its axis.
+    void source(const Primitive& p, const Modifier& of) {
+        expect_reals(p, 4);
+        DistantLight light;
+        light.name = object_name(p.name);
+        light.place = p.place;
+        light.direction = normalized(placing_.vector(point(p, 0)));
+        light.diameter = std::abs(p.reals[3]) * std::numbers::pi / 180;
+        if (!is_finite(light.direction) || light.direction == Vec3{})
+            throw Error(p.place, fmt::format("found no direction of source {}, expected one that "
+                                             "is not zero",
+                                             in_quotes(p.name)));
+        if (light.diameter > std::numbers::pi / 2) {
+            warnings_.add("source " + p.name, p.place,
+                          fmt::format("source {} is wider than 90 degrees (a sky) and not read; "
+                                      "[sky] of a project makes one",
+                                      in_quotes(p.name)));
+            return;
+        }
+        if (!of.material || !scene_.materials[*of.material].emits()) return;
+        light.colour = scene_.materials[*of.material].exitance;
+        const double level = luminance(light.colour);
+        for (double& band : light.colour) band /= level;
+        const double sine = std::sin(light.diameter / 2);
+        light.irradiance = level * sine * sine;
+        if (light.irradiance > 0) scene_.distant.push_back(std::move(light));
     }
 
     void polygon(const Primitive& p) {

@@ -68,6 +68,7 @@ std::vector<std::string> losses(const Scene& scene, const Carries& carries) {
     if (scene.cameras.size() > carries.cameras)
         tell(scene.cameras.size() - carries.cameras, "cameras are left out");
     tell(scene.luminaires.size(), "luminaires without geometry are left out");
+    tell(scene.distant.size(), "suns and skies are left out");
     tell(scene.grids.size(), "sensor grids are left out");
     tell(scene.settings.size(), "settings of the solver are left out");
     tell(scene.form_factors.surfaces.size(),
