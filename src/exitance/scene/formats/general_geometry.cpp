@@ -117,7 +117,7 @@ class GeneralGeometry {
         for (const ImportedLight& light : from_.lights)
             add_imported_light(scene_, light, placing_of(light.name), place_, warnings_);
         if (scene_.polygons.empty()) warn("empty", "there are no polygons in the file");
-        scene_.warnings = warnings_.take();
+        warnings_.tell(scene_);
         close_bodies(scene_);
         return std::move(scene_);
     }

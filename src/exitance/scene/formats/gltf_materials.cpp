@@ -99,9 +99,6 @@ void read_transmission(const tinygltf::Material& from, const std::string& path,
     to.transmittance = to.reflectance;
     for (double& tau : to.transmittance) tau *= through;
     scale(to, 1 - through);
-    warn(path, fmt::format("'{}' lets {:.3g} of the light through; it is solved as if that were "
-                           "absorbed",
-                           to.name, through));
 }
 
 // Mirror-like reflectance at normal incidence, F0 (KHR_materials_ior, KHR_materials_specular), as

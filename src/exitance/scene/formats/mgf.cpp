@@ -23,7 +23,7 @@ Scene MgfReader::read() {
         if (material.emits()) scene_.quantity = Quantity::photometric;
     if (!scene_.luminaires.empty()) scene_.quantity = Quantity::photometric;
     scene_.up = {0, 0, 1};
-    scene_.warnings = warnings_.take();
+    warnings_.tell(scene_);
     close_bodies(scene_);
     return std::move(scene_);
 }

@@ -84,10 +84,10 @@ Material scene_material(const std::string& name, const MgfMaterial& material,
     out.roughness = m.rs.value > 0 ? m.rs_roughness : m.ts_roughness;
     if (m.refractive_index != 1) out.refractive_index = m.refractive_index;
     if (m.rs.value > 0)
-        warnings.add("specular", m.place,
-                     fmt::format("mirror-like reflection (rs of material {}) is not part of the "
-                                 "radiosity solution; it is left to the second pass",
-                                 label));
+        warnings.note("specular", m.place,
+                      fmt::format("mirror-like reflection (rs of material {}) is not part of the "
+                                  "radiosity solution; it is left to the second pass",
+                                  label));
     if (m.td.value > 0)
         warnings.add("translucent", m.place,
                      fmt::format("diffuse transmission (td of material {}) is kept but not solved "

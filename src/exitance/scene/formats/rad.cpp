@@ -43,7 +43,7 @@ class RadReader {
         for (const Material& material : scene_.materials)
             if (material.emits()) scene_.quantity = Quantity::radiometric;
         scene_.up = {0, 0, 1};
-        scene_.warnings = warnings_.take();
+        warnings_.tell(scene_);
         close_bodies(scene_);
         return std::move(scene_);
     }

@@ -243,10 +243,10 @@ Material rad_material(const std::string& name, std::string_view type, std::span<
         return std::any_of(s.begin(), s.end(), [](double v) { return v > 0; });
     };
     if (positive(out.specular))
-        warnings.add("specular", place,
-                     fmt::format("mirror-like reflection (of material {}) is not part of the "
-                                 "radiosity solution; it is left to the second pass",
-                                 in_quotes(name)));
+        warnings.note("specular", place,
+                      fmt::format("mirror-like reflection (of material {}) is not part of the "
+                                  "radiosity solution; it is left to the second pass",
+                                  in_quotes(name)));
     if (positive(out.diffuse_transmittance))
         warnings.add("translucent", place,
                      fmt::format("diffuse transmission (of material {}) is kept but not solved "

@@ -44,7 +44,7 @@ class View3dReader {
         bool ended = false;
         while (!ended && cursor_.next_line()) ended = line();
         build();
-        scene_.warnings = warnings_.take();
+        warnings_.tell(scene_);
         return std::move(scene_);
     }
 
