@@ -43,6 +43,7 @@ void Reporting::add_to(CLI::App& command) {
 
 double share_done(const Progress& progress) {
     const double left = std::clamp(progress.fraction_left, 0.0, 1.0);
+    if (progress.even) return 1 - left;
     // Without a target: one part in a thousand, an unshot share that no picture shows.
     const double target = std::clamp(progress.fraction_target.value_or(1e-3), 1e-9, 0.999);
     if (left <= target) return 1;
@@ -68,10 +69,13 @@ std::string bar_line(const Progress& progress, std::size_t columns) {
     for (std::size_t i = 0; i < cells; ++i) bar += i < full ? "█" : "─";
     const double rate = progress.seconds > 0 ? double(progress.rays) / progress.seconds : 0;
     const std::string head = fmt::format("{:<10.10} ", progress.phase);
-    std::string tail =
-        fmt::format(" {:3.0f} %  unshot {}  {} shots  {} rays/s  {} vertices  ", 100 * done,
-                    human_percent(progress.fraction_left), progress.shots, human_count(rate),
-                    human_count(double(progress.vertices)));
+    std::string tail = fmt::format(" {:3.0f} %  ", 100 * done);
+    if (!progress.even)
+        tail += fmt::format("unshot {}  {} shots  ", human_percent(progress.fraction_left),
+                            progress.shots);
+    if (!progress.even || progress.rays > 0) tail += fmt::format("{} rays/s  ", human_count(rate));
+    if (!progress.even)
+        tail += fmt::format("{} vertices  ", human_count(double(progress.vertices)));
     if (progress.error) tail += fmt::format("error {}  ", human_percent(*progress.error));
     tail += fmt::format("{:.0f} s", progress.seconds);
     // Head and tail are ASCII, so that bytes are columns.

@@ -21,7 +21,8 @@ struct Reporting {
 };
 
 /// Share of the work that is done, 0 … 1. The residual of an iteration falls by about the same
-/// factor per step, so the bar is linear in its logarithm from 1 down to the target.
+/// factor per step, so the bar is linear in its logarithm from 1 down to the target; other work
+/// says that it falls evenly.
 double share_done(const Progress& progress);
 
 /// One JSON object on one line, without the newline.

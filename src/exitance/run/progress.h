@@ -16,6 +16,7 @@ struct Progress {
     std::string phase;         ///< what is being done: "direct", "shooting", "estimate"
     double seconds = 0;        ///< since the work began
     double fraction_left = 1;  ///< unshot energy / emitted energy, or work left / all work
+    bool even = false;         ///< fraction_left is work left, which falls evenly with time
     std::optional<double> fraction_target;  ///< fraction_left at which the work is done, if known
     std::uint64_t shots = 0;
     std::uint64_t rays = 0;  ///< visibility rays so far

@@ -56,6 +56,18 @@ constexpr std::array<std::uint32_t, 2> sobol(std::uint32_t index) {
     return {reverse_bits(index), y};
 }
 
+/// Direction numbers of the sequence's third and fourth dimension: m_k of the polynomials x² + x +
+/// 1 and x³ + x + 1, begun with 1, 3 and 1, 3, 1 (Joe & Kuo 2008, "Constructing Sobol' sequences
+/// with better two-dimensional projections").
+inline constexpr auto sobol_directions = [] {
+    std::array<std::array<std::uint32_t, 32>, 2> v{};
+    std::array<std::uint32_t, 32> m{1, 3}, n{1, 3, 1};
+    for (std::size_t k = 2; k < 32; ++k) m[k] = 2 * m[k - 1] ^ 4 * m[k - 2] ^ m[k - 2];
+    for (std::size_t k = 3; k < 32; ++k) n[k] = 4 * n[k - 2] ^ 8 * n[k - 3] ^ n[k - 3];
+    for (std::size_t k = 0; k < 32; ++k) v[0][k] = m[k] << (31 - k), v[1][k] = n[k] << (31 - k);
+    return v;
+}();
+
 /// Owen scrambling of one dimension by a hash (Laine & Karras 2011 in the form of Burley 2020,
 /// "Practical Hash-based Owen Scrambling", JCGT 9(4)).
 constexpr std::uint32_t owen_scramble(std::uint32_t x, std::uint32_t seed) {
@@ -75,6 +87,20 @@ constexpr std::array<double, 2> low_discrepancy(std::uint64_t key, std::uint32_t
     const auto [x, y] = sobol(index);
     return {owen_scramble(x, static_cast<std::uint32_t>(key)) * 0x1.0p-32,
             owen_scramble(y, static_cast<std::uint32_t>(key >> 32)) * 0x1.0p-32};
+}
+
+/// The same in [0, 1)⁴: for pairs of points, or a point and a direction.
+constexpr std::array<double, 4> low_discrepancy_4(std::uint64_t key, std::uint32_t index) {
+    const auto [x, y] = low_discrepancy(key, index);
+    std::uint32_t z = 0, w = 0;
+    for (std::uint32_t k = 0, i = index; i != 0; i >>= 1, ++k) {
+        if ((i & 1U) == 0) continue;
+        z ^= sobol_directions[0][k];
+        w ^= sobol_directions[1][k];
+    }
+    const std::uint64_t other = hash_bits(key);
+    return {x, y, owen_scramble(z, static_cast<std::uint32_t>(other)) * 0x1.0p-32,
+            owen_scramble(w, static_cast<std::uint32_t>(other >> 32)) * 0x1.0p-32};
 }
 
 }  // namespace exitance

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/formfactor/method.h"
+
+#include <array>
+
+#include "exitance/formfactor/contour.h"
+#include "exitance/formfactor/disk.h"
+#include "exitance/formfactor/hemicube.h"
+#include "exitance/formfactor/hemisphere.h"
+#include "exitance/formfactor/monte_carlo.h"
+#include "exitance/run/error.h"
+
+namespace exitance {
+
+Options describe(MethodOptions& o) {
+    return {
+        {"accuracy", &o.accuracy,
+         "error of a form factor to aim at, seen from the smaller of the two surfaces; every "
+         "method's effort follows from it",
+         "", 1e-7, 0.5},
+        {"samples", &o.samples,
+         "effort instead of --accuracy: contour: segments an edge; disk: cells a polygon; "
+         "hemicube: "
+         "hemicubes a polygon; hemisphere: rays a polygon; monte-carlo: rays a pair",
+         "", 1, 1e9},
+        {"resolution", &o.resolution,
+         "cells along the edge of a hemicube; default: 4/√accuracy, 32 to 1024", "", 2, 8192},
+        {"rotate", &o.rotate,
+         "turn each hemicube by an angle of its own, so that their aliasing differs"},
+        {"seed", &o.seed, "seed of the random numbers; same seed, same bytes"},
+    };
+}
+
+std::span<const FormFactorMethod> form_factor_methods() {
+    static constexpr std::array methods{
+        FormFactorMethod{"contour", "numeric double contour integral (Goral et al. 1984)",
+                         contour_form_factors},
+        FormFactorMethod{"disk", "polygons as discs, with a ray to each (Wallace et al. 1989)",
+                         disk_form_factors},
+        FormFactorMethod{"hemicube", "item buffers on half a cube (Cohen & Greenberg 1985)",
+                         hemicube_form_factors},
+        FormFactorMethod{"hemisphere", "cosine-distributed rays (Malley 1988)",
+                         hemisphere_form_factors},
+        FormFactorMethod{"monte-carlo", "pairs of random places with a ray between them",
+                         monte_carlo_form_factors},
+    };
+    return methods;
+}
+
+const FormFactorMethod& find_form_factor_method(const std::string& name) {
+    std::vector<std::string> names;
+    for (const FormFactorMethod& method : form_factor_methods()) {
+        if (method.name == name) return method;
+        names.emplace_back(method.name);
+    }
+    throw Error(Fault::wrong_use,
+                "unknown form factor method '" + name + "'" + suggestion(name, names));
+}
+
+std::vector<double> surface_areas(const Enclosure& enclosure) {
+    std::vector<double> areas;
+    for (const ExchangeSurface& surface : enclosure.surfaces) areas.push_back(surface.area);
+    return areas;
+}
+
+void WorkDone::add(double work) {
+    while (busy_.test_and_set(std::memory_order_acquire)) {
+    }
+    done_ += work;
+    if (call_.observe) {
+        Progress progress;
+        progress.phase = "factors";
+        progress.even = true;
+        progress.seconds = clock_.seconds();
+        progress.fraction_left = 1 - done_ / all_;
+        progress.rays = call_.counters.rays;
+        call_.observe(progress);
+    }
+    busy_.clear(std::memory_order_release);
+}
+
+}  // namespace exitance
