@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Matrices as text: CSV, Matrix Market, View3D, Elmer, OpenFOAM.
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 
 #include <cstring>
 
@@ -51,11 +50,11 @@ std::string one_line(std::string name) {
 }
 
 void open_foam_header(std::ostream& out, const char* kind, const char* object, std::size_t rows) {
-    fmt::print(out,
-               "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n"
-               "    class       {};\n    location    \"constant\";\n    object      {};\n}}\n\n"
-               "{}\n(\n",
-               kind, object, rows);
+    out << fmt::format(
+        "FoamFile\n{{\n    version     2.0;\n    format      ascii;\n"
+        "    class       {};\n    location    \"constant\";\n    object      {};\n}}\n\n"
+        "{}\n(\n",
+        kind, object, rows);
 }
 
 }  // namespace
@@ -73,14 +72,14 @@ void write_csv(std::ostream& out, const FormFactorResult& result) {
 void write_matrix_market(std::ostream& out, const FormFactorResult& result) {
     std::uint64_t count = 0;
     result.F.for_rows([&](std::size_t, Row entries) { count += entries.size(); });
-    fmt::print(out, "%%MatrixMarket matrix coordinate real general\n");
-    fmt::print(out, "% form factors; row, area [m2], emissivity, name:\n");
+    out << fmt::format("%%MatrixMarket matrix coordinate real general\n");
+    out << fmt::format("% form factors; row, area [m2], emissivity, name:\n");
     for (std::size_t i = 0; i < result.surfaces.size(); ++i) {
         const ExchangeSurface& surface = result.surfaces[i];
-        fmt::print(out, "% {} {:.9g} {:.6g} {}\n", i + 1, surface.area, surface.emissivity,
-                   one_line(surface.name));
+        out << fmt::format("% {} {:.9g} {:.6g} {}\n", i + 1, surface.area, surface.emissivity,
+                           one_line(surface.name));
     }
-    fmt::print(out, "{} {} {}\n", result.F.rows(), result.F.rows(), count);
+    out << fmt::format("{} {} {}\n", result.F.rows(), result.F.rows(), count);
     fmt::memory_buffer line;
     result.F.for_rows([&](std::size_t i, Row entries) {
         for (const Entry& e : entries)
