@@ -5,6 +5,7 @@
 
 #include "human_number.h"
 #include "scene_report.h"
+#include "summary.h"
 
 namespace exitance::cli {
 
@@ -30,13 +31,12 @@ std::string SolutionReport::text() const {
         return human_quantity(value, flux_unit(solution_.quantity));
     };
     out += fmt::format(
-        "\nEnergy: {} emitted\n  {} absorbed, {} absorbed by backs, {} escaped, {} still unshot\n",
+        "\nEnergy: {} emitted\n  {} absorbed, {} absorbed by backs and lamps, {} escaped, {} still "
+        "unshot\n",
         flux(energy.emitted), flux(energy.absorbed), flux(energy.absorbed_behind),
         flux(energy.escaped), flux(energy.unshot));
     if (solution_.error)
-        out += fmt::format("Error: {} ± {} (RMS of irradiance over its mean, {} held-out points)\n",
-                           human_percent(solution_.error->rms),
-                           human_percent(solution_.error->confidence), solution_.error->points);
+        out += fmt::format("Error: {}\n", error_text(*solution_.error));
     else
         out += "Error: not estimated\n";
 

@@ -24,7 +24,7 @@ std::string energy_line(const Solution& solution) {
     if (energy.emitted <= 0) return "nothing is emitted";
     const auto share = [&](double part) { return human_percent(part / energy.emitted); };
     return fmt::format(
-        "{} emitted = {} absorbed + {} absorbed by backs + {} escaped + {} unshot; balance off by "
+        "{} emitted = {} absorbed + {} by backs and lamps + {} escaped + {} unshot; balance off by "
         "{}",
         human_quantity(energy.emitted, unit), share(energy.absorbed), share(energy.absorbed_behind),
         share(energy.escaped), share(energy.unshot), human_percent(std::abs(energy.imbalance())));
@@ -43,16 +43,22 @@ void print_findings(const Scene& scene) {
     }
 }
 
+std::string error_text(const ErrorEstimate& error) {
+    // Few points with most of the error tell little more than how large it may be.
+    const std::string value =
+        error.confidence < error.rms
+            ? fmt::format("{} ± {}", human_percent(error.rms), human_percent(error.confidence))
+            : "below " + human_percent(error.rms + error.confidence);
+    return fmt::format("{} (RMS of irradiance over its mean, {} held-out points)", value,
+                       error.points);
+}
+
 std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds) {
     std::string out =
         fmt::format("{}: {} vertices, {} triangles, light groups: {}\n", file.string(),
                     solution.positions.size(), solution.triangles.size(), group_names(solution));
     out += fmt::format("  energy  {}\n", energy_line(solution));
-    if (solution.error)
-        out +=
-            fmt::format("  error   {} ± {} (RMS of irradiance over its mean, {} held-out points)\n",
-                        human_percent(solution.error->rms),
-                        human_percent(solution.error->confidence), solution.error->points);
+    if (solution.error) out += fmt::format("  error   {}\n", error_text(*solution.error));
     const auto count = [&](const char* name) {
         const auto found = solution.counters.find(name);
         return human_count(found == solution.counters.end() ? 0 : found->second);

@@ -115,7 +115,8 @@ EnergyBalance balance(const Radiosity& radiosity, std::uint64_t seed) {
             }
             const auto area = static_cast<double>(element.area);
             const auto open = static_cast<double>(radiosity.open_share(element));
-            out.absorbed += area * open * static_cast<double>(columns.luminance(absorbed));
+            if (!radiosity.black_lamp()[face.polygon.value])
+                out.absorbed += area * open * static_cast<double>(columns.luminance(absorbed));
             out.unshot += area * open * static_cast<double>(columns.luminance(reflected));
             const auto send = [&](std::span<const float> exitance, bool covered) {
                 const double flux = area * static_cast<double>(columns.luminance(exitance));

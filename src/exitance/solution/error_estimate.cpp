@@ -30,7 +30,12 @@ double triangle_area(const Solution& solution, std::size_t t) {
     return 0.5 * length(cross(q - p, r - p));
 }
 
-// Points spread evenly over the area of all that reflects, by systematic sampling.
+// Nobody asks what a lamp that reflects nothing receives.
+bool is_of_interest(const Material& material) {
+    return luminance(material.reflectance) > 0 || !material.emits();
+}
+
+// Points spread evenly over the area of all that is of interest, by systematic sampling.
 HeldOut hold_out(const Solution& solution, std::uint64_t seed) {
     HeldOut out;
     std::vector<double> cumulative;
@@ -38,7 +43,7 @@ HeldOut hold_out(const Solution& solution, std::uint64_t seed) {
     double total = 0, reflected = 0;
     for (const SolutionPart& part : solution.parts) {
         const double rho = luminance(solution.materials[part.material].reflectance);
-        if (rho <= 0) continue;
+        if (!is_of_interest(solution.materials[part.material])) continue;
         for (std::uint32_t k = 0; k < part.triangles; ++k) {
             const std::uint32_t t = part.first_triangle + k;
             const double area = triangle_area(solution, t);

@@ -11,7 +11,7 @@ namespace exitance {
 
 struct LostLight {
     double escaped = 0;  ///< left the scene
-    double behind = 0;   ///< met the black back of a one-sided polygon
+    double behind = 0;   ///< met the black back of a one-sided polygon, or a black lamp
     LostLight& operator+=(const LostLight& o) {
         escaped += o.escaped, behind += o.behind;
         return *this;
@@ -25,8 +25,9 @@ inline void follow(const Radiosity& radiosity, const RayPacket& rays,
                    std::array<double, RayPacket::width> flux, std::uint32_t covered,
                    LostLight& lost) {
     const auto is_black = [&](std::size_t k, const RayCaster::PacketHits& met) {
-        return !(covered >> k & 1u) && !(met.front >> k & 1u) &&
-               !radiosity.two_sided()[met.primitive[k]];
+        if (covered >> k & 1u) return false;
+        const bool back = !(met.front >> k & 1u) && !radiosity.two_sided()[met.primitive[k]];
+        return back || radiosity.black_lamp()[met.primitive[k]];
     };
     RayCaster::PacketHits hits;
     closest_beyond_glass(radiosity.caster, rays, hits, [&](auto k, const auto& met) {

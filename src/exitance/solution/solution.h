@@ -22,7 +22,7 @@ namespace exitance {
 struct EnergyBalance {
     double emitted = 0;
     double absorbed = 0;         ///< by front sides: (1 − ρ) E over the mesh
-    double absorbed_behind = 0;  ///< by the black backs of one-sided surfaces
+    double absorbed_behind = 0;  ///< by the black backs of one-sided surfaces, by black lamps
     double escaped = 0;          ///< left the scene
     double unshot = 0;           ///< still to be distributed when the solver stopped
 

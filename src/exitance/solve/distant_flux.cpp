@@ -29,9 +29,11 @@ struct Pieces {
     std::vector<Piece> list;
     std::vector<double> cumulative;  ///< of the areas
 
-    explicit Pieces(const Mesh& mesh) {
+    explicit Pieces(const Radiosity& radiosity) {
+        const Mesh& mesh = radiosity.mesh;
         double total = 0;
         for (const Face& face : mesh.faces()) {
+            if (radiosity.black_lamp()[face.polygon.value]) continue;
             const auto c = mesh.corners(face);
             for (std::uint32_t k = 2; k < face.count; ++k) {
                 const Vec3 u = c[k - 1] - c[0], v = c[k] - c[0];
@@ -67,7 +69,7 @@ Way way_to(const DistantLight& light, const Vec3& normal, const UnitSquare& u) {
 
 double received_flux(const Radiosity& radiosity, std::size_t which, std::uint64_t seed) {
     const DistantLight& light = radiosity.scene.distant[which];
-    const Pieces pieces(radiosity.mesh);
+    const Pieces pieces(radiosity);
     if (pieces.list.empty()) return 0;
     const double area = pieces.cumulative.back(), each = area / double(ray_count);
     const std::uint64_t key = hash_bits(seed, which, 0xf1u);

@@ -92,7 +92,11 @@ Radiosity::Radiosity(const Scene& the_scene, const LightGroups& light_groups,
                                b] = static_cast<float>(light.colour[b]);
         if (light.kind == DistantLight::Kind::sky && light.shines()) skies.emplace_back(l, light);
     }
-    for (const Polygon& p : scene.polygons) two_sided_.push_back(scene.material(p).two_sided);
+    for (const Polygon& p : scene.polygons) {
+        const Material& material = scene.material(p);
+        two_sided_.push_back(material.two_sided);
+        black_lamp_.push_back(material.emits() && !(luminance(material.reflectance) > 0));
+    }
 
     for (const Face& face : mesh.faces()) {
         const auto corners = mesh.corners(face);
@@ -179,12 +183,6 @@ bool Radiosity::emits(const Face& face) const {
     if (!scene.materials[scene.surfaces[face.surface].material].emits()) return false;
     if (emitted_of_polygon_.empty()) return true;
     return columns.magnitude(emitted(face)) > 0;
-}
-
-bool Radiosity::reflects(const Face& face) const {
-    for (const float r : rho(face))
-        if (r > 0) return true;
-    return false;
 }
 
 void Radiosity::admit_new_vertices() {

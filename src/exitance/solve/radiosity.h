@@ -70,7 +70,6 @@ class Radiosity {
     /// Per column: the colour of a distant light in its group.
     std::span<const float> emitted_from_afar(std::size_t light) const;
     bool emits(const Face& face) const;
-    bool reflects(const Face& face) const;
 
     /// Makes receivers, rows and exposure for vertices that the mesh has gained.
     void admit_new_vertices();
@@ -98,6 +97,9 @@ class Radiosity {
     double emitted_flux() const { return emitted_flux_; }
 
     const std::vector<char>& two_sided() const { return two_sided_; }
+    /// Per polygon: a lamp that reflects nothing. Nobody asks for the light that it receives: its
+    /// mesh is not refined, and the balance counts what lands there by rays.
+    const std::vector<char>& black_lamp() const { return black_lamp_; }
 
     /// A polygon of `face` as a source, with what covers it.
     Source source(const Face& face, const std::array<Vec3, 4>& corners) const;
@@ -117,7 +119,7 @@ class Radiosity {
     void find_rho_of_new_elements();
     void find_emission_of_textured_polygons();
     std::vector<float> emitted_from_afar_;  ///< distant light × stride
-    std::vector<char> two_sided_;
+    std::vector<char> two_sided_, black_lamp_;
     double area_ = 0, emitted_flux_ = 0;
 };
 

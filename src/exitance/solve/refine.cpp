@@ -119,7 +119,7 @@ class Refinement {
     bool worth_testing(ElementId id) const {
         const Element& element = radiosity_.mesh[id];
         if (is_small(element) || element.level >= Mesh::max_level) return false;
-        if (!radiosity_.reflects(radiosity_.mesh.face_of(element))) return false;
+        if (radiosity_.black_lamp()[radiosity_.mesh.face_of(element).polygon.value]) return false;
         const Corners c = corners_of(element);
         // Covered at all corners, perhaps by different objects with light between them.
         if (c.open == 0) return options_.thorough && element.level <= thorough_level;
