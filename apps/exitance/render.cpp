@@ -117,6 +117,7 @@ class RenderCommand {
             return command.add_option(flag, value, what)
                 ->type_name("x y z")
                 ->expected(3)
+                ->delimiter(',')
                 ->group("Camera");
         };
         auto* eye = place("--eye", eye_, "where the camera stands [m]")->excludes(name);
