@@ -22,12 +22,14 @@ build: ## the program: build/bin/exitance
 	@[ -f build/build.ninja ] || cmake --preset program --log-level=NOTICE
 	@cmake --build build --target exitance_app
 
-test: ## every check, also under the address and undefined behaviour sanitizers
+test: ## every check, also under the sanitizers, and fuzzers
 	@scripts/setup build test
 	@cmake --preset release --log-level=NOTICE
 	@cmake --build --preset release
 	@cmake --preset asan --log-level=NOTICE
 	@cmake --build --preset asan
+	@cmake --preset fuzz --log-level=NOTICE
+	@cmake --build --preset fuzz
 	@ctest --test-dir build --output-on-failure --no-label-summary -j $$(nproc)
 
 tsan: ## the parallel parts under the thread sanitizer
@@ -52,4 +54,4 @@ format: ## lay out the sources as .clang-format says
 	@scripts/format
 
 clean: ## remove everything that was built
-	rm -rf build build-asan build-tsan build-bench out
+	rm -rf build build-asan build-fuzz build-tsan build-bench out

@@ -72,7 +72,7 @@ class InfoCommand {
         if (diagram_ && diagram_->extension() != ".svg")
             throw Error(Fault::wrong_use,
                         "diagrams are written as .svg, found '" + diagram_->string() + "'");
-        LampFile lamp = read_lamp_file(file_);
+        LampFile lamp = read_lamp_file(file_, 1, read_options_);
         if (diagram_) {
             const std::string& name = lamp.photometry.name;
             const std::string svg = polar_diagram(

@@ -113,6 +113,51 @@ TEST(DaylightKeys, AMapKeepsItsLight) {
     }
 }
 
+TEST(DaylightKeys, PicturesHaveALargestSizeAndFillIt) {
+    Folder folder;
+    for (const std::string kind : {".exr", ".hdr"}) {
+        const std::string sky = "[sky]\nmodel = \"map\"\nfile = \"sky" + kind + "\"\n";
+        write_image(Image(64, 32), folder.path() / ("sky" + kind));
+        const auto project = folder.write("day.toml", floor + sky);
+        ReadOptions few;
+        few.max_texture_pixels = 64 * 32 - 1;
+        testing::expect_refused([&] { read_scene(project, few); }, project.string() + ":12:8",
+                                "64 × 32 pixels, more than 2047; --max-texture-pixels raises");
+        few.max_texture_pixels = 64 * 32;
+        EXPECT_EQ(read_scene(project, few).distant.size(), 1U);
+        ReadOptions small;
+        small.max_file_size =
+            double(std::filesystem::file_size(folder.path() / ("sky" + kind)) - 1) / (1 << 20);
+        EXPECT_NE(testing::refusal([&] { read_scene(project, small); }).find("--max-file-size"),
+                  std::string::npos);
+    }
+    // What a few bytes claim is not set aside: 16384 × 8192 pixels of them.
+    folder.write("sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8192 +X 16384\n\2\2\100");
+    EXPECT_TRUE(testing::sound_within(
+        64, [&] { read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky.hdr\"\n"); }));
+    EXPECT_NE(testing::refusal([&] {
+                  read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky.hdr\"\n");
+              }).find("16384 × 8192 pixels, but has only"),
+              std::string::npos);
+    write_image(Image(32, 64), folder.path() / "sky.hdr");
+    EXPECT_NE(testing::refusal([&] {
+                  read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky.hdr\"\n");
+              }).find("expected about twice as wide as high"),
+              std::string::npos);
+    // The same in the header of an EXR: the attribute dataWindow ends with its last column and row.
+    write_image(Image(64, 32), folder.path() / "sky.exr");
+    std::ifstream in(folder.path() / "sky.exr", std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    for (const std::string name : {"dataWindow", "displayWindow"}) {
+        const std::size_t at = bytes.find(name) + name.size() + 1 + 6 + 4 + 8;
+        bytes.replace(at, 8, std::string("\xff\x3f\0\0\xff\x1f\0\0", 8));
+    }
+    folder.write("sky.exr", bytes);
+    const auto exr = [&] { read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky.exr\"\n"); };
+    EXPECT_NE(testing::refusal(exr).find("sky.exr"), std::string::npos);
+    EXPECT_TRUE(testing::sound_within(256, exr));
+}
+
 TEST(DaylightKeys, WrongOnesAreRefusedWhereTheyStand) {
     Folder folder;
     const auto refused = [&](const std::string& text, const std::string& why) {

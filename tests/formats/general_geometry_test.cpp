@@ -355,6 +355,28 @@ TEST(GeneralGeometry, BadInputIsRefusedWithItsFile) {
     expect("text.stl", square + "f 1 2 3\n", "STL");
 }
 
+TEST(GeneralGeometry, BombsEndAsErrorsWithinASecond) {
+    const Folder folder;
+    // Each entity is ten of the one before: 10^12 laughs.
+    std::string laughs = "<?xml version=\"1.0\"?>\n<!DOCTYPE COLLADA [\n<!ENTITY l0 \"ha\">\n";
+    for (int i = 1; i < 13; ++i) {
+        laughs += "<!ENTITY l" + std::to_string(i) + " \"";
+        for (int k = 0; k < 10; ++k) laughs += "&l" + std::to_string(i - 1) + ";";
+        laughs += "\">\n";
+    }
+    laughs += "]>\n<COLLADA version=\"1.4.1\"><asset>&l12;</asset></COLLADA>\n";
+    std::string deep = "<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\">";
+    for (int i = 0; i < 100'000; ++i) deep += "<node>";
+    for (const auto& [name, bytes] : {std::pair{"laughs.dae", laughs},
+                                      std::pair{"deep.dae", deep},
+                                      {"zip.dae", "PK\3\4 bomb PK\5\6" + std::string(18, '\0')}}) {
+        const auto path = folder.write(name, bytes);
+        const auto begin = std::chrono::steady_clock::now();
+        expect_refused([&] { read_scene(path); }, path.string(), "cannot be read as Collada");
+        EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1)) << name;
+    }
+}
+
 TEST(GeneralGeometry, CrashesAndExcessEndAsFailures) {
     const auto message = [](const std::function<std::string()>& work, const CallLimits& limits) {
         try {

@@ -104,6 +104,27 @@ TEST(GltfCompression, DracoIsDecoded) {
     expect_square(parse_gltf("t.glb", gltf_of_draco(draco_square()).bytes()));
 }
 
+TEST(GltfCompression, AbsurdDracoIsRefusedBeforeItIsDecoded) {
+    using namespace std::string_literals;
+    const std::string mesh = "DRACO\x02\x02\x01"s;
+    const std::string absurd = "\xff\xff\xff\xff\x07"s, three = "\x03"s, room(40, '\0');
+    for (const std::string& bytes :
+         {mesh + "\0\0\0"s + absurd + three + room,               // faces, sequential
+          mesh + "\0\0\0"s + three + absurd + room,               // points
+          mesh + "\1\0\0\0"s + absurd + three + room,             // points, edgebreaker
+          mesh + "\1\0\0\0"s + three + absurd + room,             // faces
+          mesh + "\1\0\x80\0\0\0\0"s + three + absurd + room}) {  // after metadata of nothing
+        const std::string file = gltf_of_draco(bytes).bytes();
+        expect_refused([&] { parse_gltf("t.glb", file); }, "t.glb", "which cannot be");
+        EXPECT_TRUE(testing::sound_within(64, [&] { parse_gltf("t.glb", file); }));
+    }
+    for (const std::string& bytes : {mesh, mesh + "\1\0\0"s, mesh + "\0\0\x80\5"s})
+        expect_refused([&] { parse_gltf("t.glb", gltf_of_draco(bytes).bytes()); }, "t.glb",
+                       "ends in its header");
+    expect_refused([&] { parse_gltf("t.glb", gltf_of_draco("DRACO\1\2"s + room).bytes()); },
+                   "t.glb", "expected Draco 2.2");
+}
+
 TEST(GltfCompression, DamagedDracoIsReadOrRefused) {
     const std::string whole = draco_square();
     for (std::size_t i = 0; i < whole.size(); ++i) {
@@ -112,7 +133,10 @@ TEST(GltfCompression, DamagedDracoIsReadOrRefused) {
         expect_sound([&] { parse_gltf("t.glb", gltf_of_draco(damaged).bytes()); }, "t.glb", false);
     }
     expect_refused([&] { parse_gltf("t.glb", gltf_of_draco("no Draco").bytes()); }, "t.glb",
-                   "cannot be decoded");
+                   "expected Draco 2.2");
+    expect_refused(
+        [&] { parse_gltf("t.glb", gltf_of_draco(whole.substr(0, whole.size() / 2)).bytes()); },
+        "t.glb", "cannot be decoded");
 }
 
 TEST(GltfCompression, InstancesStandWhereTheirAttributesSay) {

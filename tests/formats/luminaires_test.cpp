@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -189,6 +190,41 @@ TEST(ProjectLuminaires, AnotherProjectBringsItsLampsAlong) {
     expect_near(scene.luminaires[0].nadir, {0, -1, 0});
 }
 
+TEST(ProjectLuminaires, ArraysWithoutEndAreRefusedAtOnce) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Folder folder;
+    const auto spheres = [](int columns, int rows, int tables) {
+        std::string out;
+        for (int i = 0; i < tables; ++i)
+            out += fmt::format(
+                "[[luminaire]]\nname = \"{}\"\nshape = \"sphere\"\nradius = 1\n"
+                "lumens = 1\nposition = [0, 0, 0]\ncolumns = {}\nrows = {}\n"
+                "spacing = [1, 1]\n",
+                i, columns, rows);
+        return out;
+    };
+    const auto many = folder.write("many.toml", spheres(200, 300, 2));
+    ReadOptions options;
+    options.max_luminaires = 119'999;
+    options.max_polygons = 1;
+    expect_refused([&] { read_scene(many, options); }, many.string() + ":1:1",
+                   "--max-polygons raises the limit");
+    const auto points = folder.write("points.toml", [&] {
+        std::string text = spheres(20, 30, 2);
+        for (std::size_t at; (at = text.find("\"sphere\"\nradius = 1")) != std::string::npos;)
+            text.replace(at, 19, "\"point\"");
+        return text;
+    }());
+    options = {};
+    options.max_luminaires = 1199;
+    expect_refused([&] { read_scene(points, options); }, points.string() + ":15:8",
+                   "1200 lamps, more than 1199; --max-luminaires raises the limit");
+    options.max_luminaires = 1200;
+    EXPECT_EQ(read_scene(points, options).luminaires.size(), 1200U);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    EXPECT_LT(took.count(), 1);
+}
+
 TEST(ProjectLuminaires, RefusalsNameThePlace) {
     const Project project;
     const std::string toml = (project.folder.path() / "p.toml").string();
@@ -214,7 +250,8 @@ TEST(ProjectLuminaires, RefusalsNameThePlace) {
     refused("file = \"lamp.ldt\"\ncolor_temperature = 300", "5:21", "color_temperature");
     refused("file = \"lamp.ldt\"\ncolumns = 2", "1:1", "spacing");
     refused("file = \"lamp.ldt\"\nspacing = [1, 1]", "5:11", "of a single lamp");
-    refused("file = \"lamp.ldt\"\ncolumns = 1000\nrows = 1000\nspacing = [1, 1]", "6:8", "100000");
+    refused("file = \"lamp.ldt\"\ncolumns = 1000\nrows = 1000\nspacing = [1, 1]", "6:8",
+            "1000000 lamps, more than 100000; --max-luminaires raises the limit");
     refused("shape = \"point\"", "1:1", "found none of 'lumens', 'watts' and 'candela'");
     refused("shape = \"point\"\nlumens = 1\naim = [0, 1, 0]", "6:7", "a point has no 'aim'");
     refused("shape = \"spot\"\nlumens = 1", "1:1", "beam");

@@ -458,6 +458,14 @@ TEST(Mgf, ArraysWithoutEndAreRefusedAtOnce) {
     expect_refused([&] { parse(square + "xf -a 1e15 -t 1 0 0\n"); }, "t.mgf:9:1", "--max-lines");
     expect_refused([&] { parse(square + "xf -a 1000000 -t 1 0 0\nsph a 1\n"); }, "t.mgf:10",
                    "--max-polygons");
+    // An array of a file with an array of a file with an array …
+    const Folder folder;
+    folder.write("a0.mgf", square + "f a b c\n");
+    for (int i = 1; i < 10; ++i)
+        folder.write("a" + std::to_string(i) + ".mgf",
+                     "i a" + std::to_string(i - 1) + ".mgf -a 1000 -t 1 0 0\n");
+    EXPECT_NE(testing::refusal([&] { read_scene(folder.path() / "a9.mgf"); }).find("--max-"),
+              std::string::npos);
     ReadOptions few;
     few.max_polygons = 10;
     expect_refused([&] { parse(square + "xf -a 11 -t 1 0 0\nf a b c\nxf\n", few); }, "t.mgf:10",
@@ -492,6 +500,12 @@ TEST(Mgf, BodiesWithoutExtentAreLeftOutAndTold) {
                               "ring n 1 1\ntorus n 1 1\nprism a b c 0\nf a b c\n");
     EXPECT_EQ(scene.polygons.size(), 1U);
     EXPECT_EQ(warned(scene, "without extent is left out"), 6U);
+}
+
+TEST(Mgf, ASceneInOnePointIsEmpty) {
+    const Scene scene =
+        parse("m lamp =\nv a =\np 1 2 3\nv b =\np 1 2 3\nv c =\np 1 2 3\nf a b c\n");
+    EXPECT_TRUE(scene.polygons.empty() || scene.bounds().diagonal() == 0);
 }
 
 TEST(Mgf, LuminairesAreLamps) {

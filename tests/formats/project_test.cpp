@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <chrono>
 #include <map>
 #include <numbers>
 
@@ -386,6 +387,48 @@ TEST(Project, DeepNestingIsRefused) {
     const std::string deep = "title = " + std::string(100'000, '[');
     EXPECT_TRUE(testing::sound_within(64, [&] { parse(deep); }));
     EXPECT_NE(testing::refusal([&] { parse(deep); }).find("not TOML"), std::string::npos);
+}
+
+TEST(Project, FilesThatNameEachOtherComeToAnEnd) {
+    const Folder folder;
+    const auto naming = [&](const std::string& name, const std::string& file) {
+        return folder.write(name, "[[geometry]]\nfile = \"" + file + "\"\n");
+    };
+    const auto a = naming("a.toml", "b.toml");
+    const auto b = naming("b.toml", "a.toml");
+    expect_refused([&] { read_scene(a); }, b.string() + ":2:8", "the project includes itself");
+    naming("p0.toml", "p1.toml");
+    folder.write("p1.toml", "title = \"the last\"\n");
+    naming("p2.toml", "p0.toml");
+    ReadOptions shallow;
+    shallow.max_include_depth = 2;
+    expect_refused([&] { read_scene(folder.path() / "p2.toml", shallow); },
+                   (folder.path() / "p0.toml").string() + ":2:8", "--max-include-depth raises");
+    ReadOptions few;
+    few.max_files = 2;
+    expect_refused([&] { read_scene(folder.path() / "p2.toml", few); },
+                   (folder.path() / "p0.toml").string() + ":2:8", "--max-files raises");
+    shallow.max_include_depth = few.max_files = 3;
+    EXPECT_TRUE(read_scene(folder.path() / "p2.toml", shallow).polygons.empty());
+    // Each names the one before twice.
+    for (int i = 2; i < 30; ++i) {
+        const std::string before = "[[geometry]]\nfile = \"p" + std::to_string(i - 1) + ".toml\"\n";
+        folder.write("p" + std::to_string(i) + ".toml", before + before);
+    }
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_NE(testing::refusal([&] { read_scene(folder.path() / "p29.toml"); }).find("--max-files"),
+              std::string::npos);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
+TEST(Project, ManyMaterialsTakeLittleTime) {
+    std::string text;
+    for (int i = 0; i < 4000; ++i)
+        text += "[[material]]\nname = \"m" + std::to_string(i) + "\"\nreflectance = 0.5\n";
+    const auto begin = std::chrono::steady_clock::now();
+    EXPECT_EQ(parse(text).materials.size(), 4000U);
+    // A search through all names for each pair of materials took minutes.
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
 }
 
 RC_GTEST_PROP(Project, AnyMutationIsReadOrRefused, ()) {

@@ -316,6 +316,16 @@ TEST(Rad, FilesAndArraysComeToAnEnd) {
                   "!genbox white b 1 1 1 | xform -a 1e4 -t 1 0 0 | xform -a 1e4 -t 0 1 0\n");
         },
         "t.rad:2:1", "--max-lines");
+    // Arrays in one command, and an array of a file with arrays of a file with arrays …
+    expect_refused(
+        [&] { parse(white + "!genbox white b 1 1 1 | xform -a 1e5 -t 1 0 0 -i 1 -a 1e5\n"); },
+        "t.rad:2:1", "--max-lines");
+    folder.write("a0.rad", white + square);
+    for (int i = 1; i < 10; ++i)
+        folder.write("a" + std::to_string(i) + ".rad",
+                     "!xform -a 1000 -t 1 0 0 a" + std::to_string(i - 1) + ".rad\n");
+    EXPECT_NE(testing::refusal([&] { read_scene(folder.path() / "a9.rad"); }).find("--max-"),
+              std::string::npos);
     ReadOptions long_winded;
     long_winded.max_lines = 1'000'000'000;
     expect_refused(

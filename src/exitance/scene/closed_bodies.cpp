@@ -26,7 +26,8 @@ constexpr std::uint64_t most_looked_at = 200'000'000;
 
 // Every point's place: points that lie together have the same one.
 std::vector<std::uint32_t> places_of(const Scene& scene, const Box& bounds) {
-    const double cell = weld * bounds.diagonal();
+    // Above zero also where all corners are one point.
+    const double cell = std::max(weld * bounds.diagonal(), 1e-100);
     std::vector<std::uint32_t> out(scene.points.size());
     std::unordered_map<std::uint64_t, std::uint32_t> places;
     for (std::uint32_t i = 0; i < scene.points.size(); ++i) {

@@ -75,10 +75,12 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
     const std::string extension = path.extension().string();
     const auto read = [&]() -> Scene {
         if (extension == ".toml")
-            return parse_project(path, bytes,
-                                 [&](const std::filesystem::path& file, const Place& at) {
-                                     return read_by_kind(file, at, nesting, options);
-                                 });
+            return parse_project(
+                path, bytes,
+                [&](const std::filesystem::path& file, const Place& at) {
+                    return read_by_kind(file, at, nesting, options);
+                },
+                options);
         if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes, options);
         if (extension == ".mgf") return parse_mgf(path, std::move(bytes), options);
         if (extension == ".rad") return parse_rad(path, std::move(bytes), options);

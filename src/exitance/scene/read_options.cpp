@@ -15,15 +15,16 @@ Options describe(ReadOptions& o) {
         {"max-files", &o.max_files,
          "files that a scene may name, counted as often as they are read", "", 1, 1e9},
         {"max-file-size", &o.max_file_size, "largest file that is read", "MiB", 1e-6, 1e6},
-        {"max-polygons", &o.max_polygons, "polygons of a scene (glTF, MGF, Radiance)", "", 1,
-         134217728},
+        {"max-polygons", &o.max_polygons, "polygons of a scene", "", 1, 134217728},
         {"max-corners", &o.max_corners, "corners of one polygon (MGF, Radiance)", "", 3, 1e6},
         {"max-lines", &o.max_lines,
          "lines that are read, those of arrays and included files as often as they count (MGF, "
          "Radiance)",
          "", 1, 1e12},
-        {"max-texture-pixels", &o.max_texture_pixels, "pixels of all textures of a file (glTF)", "",
-         1, 1e10},
+        {"max-texture-pixels", &o.max_texture_pixels,
+         "pixels of all textures of a glTF, and of an environment map", "", 1, 1e10},
+        {"max-luminaires", &o.max_luminaires, "lamps of a project, those of arrays one by one", "",
+         1, 1e8},
     };
 }
 

@@ -18,7 +18,8 @@ struct ReadOptions {
     std::uint64_t max_polygons = 20'000'000;
     std::uint64_t max_corners = 10'000;
     std::uint64_t max_lines = 20'000'000;
-    std::uint64_t max_texture_pixels = 100'000'000;
+    std::uint64_t max_texture_pixels = 16384 * 8192;
+    std::uint64_t max_luminaires = 100'000;
 
     /// max_file_size [bytes].
     std::uint64_t most_bytes() const {

@@ -43,9 +43,11 @@ double sun_illuminance(const Availability& day, double altitude, int day_of_year
 
 class DaylightReader {
   public:
-    DaylightReader(Scene& scene, const TomlTable& project, const std::filesystem::path& folder)
+    DaylightReader(Scene& scene, const TomlTable& project, const std::filesystem::path& folder,
+                   const ReadOptions& options)
         : scene_(scene),
           folder_(folder),
+          options_(options),
           site_(project.table("site", project_keys("site"))),
           sky_(project.table("sky", project_keys("sky"))),
           sun_(project.table("sun", project_keys("sun"))) {}
@@ -142,8 +144,9 @@ class DaylightReader {
         sky_->require("file");
         light.strength = factor * sky_->number("scale", 0, most).value_or(1);
         const double turn = sky_->number("rotation", -360, 360).value_or(0) + north();
-        light.map = std::make_shared<const RadianceMap>(read_environment_map(
-            (folder_ / *sky_->text("file")).lexically_normal(), turn, sky_->place("file")));
+        light.map = std::make_shared<const RadianceMap>(
+            read_environment_map((folder_ / *sky_->text("file")).lexically_normal(), turn,
+                                 sky_->place("file"), options_));
     }
 
     // Fills the model; returns the horizontal irradiance to expect of it.
@@ -235,6 +238,7 @@ class DaylightReader {
 
     Scene& scene_;
     std::filesystem::path folder_;
+    const ReadOptions& options_;
     std::optional<TomlTable> site_, sky_, sun_;
     std::optional<Vec3> to_sun_;
     std::optional<double> altitude_;
@@ -246,8 +250,9 @@ class DaylightReader {
 
 }  // namespace
 
-void add_daylight(Scene& scene, const TomlTable& project, const std::filesystem::path& folder) {
-    DaylightReader(scene, project, folder).read();
+void add_daylight(Scene& scene, const TomlTable& project, const std::filesystem::path& folder,
+                  const ReadOptions& options) {
+    DaylightReader(scene, project, folder, options).read();
 }
 
 }  // namespace exitance

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "exitance/run/error.h"
+#include "exitance/scene/read_options.h"
 #include "exitance/scene/sky.h"
 
 namespace exitance {
@@ -13,8 +14,8 @@ namespace exitance {
 /// middle column is seen towards −z; `rotation` degrees turn it counter-clockwise seen from above.
 /// Cells of the map keep the radiance that falls on them exactly, so a sun of a few pixels keeps
 /// its light, spread over a cell of about a degree. Throws Error at `named` for what cannot be read
-/// or is larger than 16384 × 8192.
+/// or is larger than `options` allow.
 RadianceMap read_environment_map(const std::filesystem::path& path, double rotation,
-                                 const Place& named);
+                                 const Place& named, const ReadOptions& options);
 
 }  // namespace exitance

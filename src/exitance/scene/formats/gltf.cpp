@@ -478,7 +478,7 @@ Scene parse_gltf(const std::filesystem::path& path, std::string_view bytes,
     const GltfParts parts = split_gltf(path.string(), bytes);
     const JsonText json(path.string(), parts.json, !parts.is_binary);
     check_gltf(json);
-    const tinygltf::Model model = load_gltf(path, parts, json);
+    const tinygltf::Model model = load_gltf(path, parts, json, options.most_bytes());
     return GltfReader(path, model, json, options).read();
 }
 

@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/scene/formats/gltf_compression.h"
 
+#include <draco/compression/config/compression_shared.h>
 #include <draco/compression/decode.h>
+#include <draco/compression/point_cloud/point_cloud_decoder.h>
+#include <draco/core/varint_decoding.h>
+#include <draco/metadata/metadata_decoder.h>
 #include <fmt/format.h>
 #include <meshoptimizer.h>
 #include <tiny_gltf.h>
 
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 
 namespace exitance {
 
@@ -132,6 +140,33 @@ void put(tinygltf::Model& model, int accessor_index, std::vector<unsigned char> 
     accessor.sparse.isSparse = false;
 }
 
+// Points and faces that the data says it has, from its first numbers (Draco bitstream 2.2, sections
+// "Header", "Metadata", "Sequential" and "EdgeBreaker" connectivity): the decoder sets memory aside
+// on their word. Nothing for data that does not get so far.
+std::optional<std::uint64_t> stated_draco_elements(std::span<const unsigned char> from) {
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(from.data()), from.size());
+    draco::DracoHeader header{};
+    if (!draco::PointCloudDecoder::DecodeHeader(&buffer, &header).ok()) return {};
+    buffer.set_bitstream_version(DRACO_BITSTREAM_VERSION(header.version_major,  // NOLINT
+                                                         header.version_minor));
+    if ((header.flags & METADATA_FLAG_MASK) != 0) {
+        draco::GeometryMetadata skipped;
+        if (!draco::MetadataDecoder().DecodeGeometryMetadata(&buffer, &skipped)) return {};
+    }
+    std::uint8_t traversal = 0;
+    if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING && !buffer.Decode(&traversal))
+        return {};
+    std::uint32_t first = 0, second = 0;  // faces and points, or points and faces
+    if (!draco::DecodeVarint(&first, &buffer) || !draco::DecodeVarint(&second, &buffer)) return {};
+    return std::uint64_t{first} + second;
+}
+
+bool is_draco_2_2(std::span<const unsigned char> from) {
+    static constexpr std::array<unsigned char, 7> begin{'D', 'R', 'A', 'C', 'O', 2, 2};
+    return from.size() >= begin.size() && std::equal(begin.begin(), begin.end(), from.begin());
+}
+
 void unpack_primitive(tinygltf::Model& model, tinygltf::Primitive& primitive,
                       const JsonNode& packed, const JsonText& json) {
     const std::size_t v =
@@ -139,6 +174,15 @@ void unpack_primitive(tinygltf::Model& model, tinygltf::Primitive& primitive,
     const tinygltf::BufferView view = model.bufferViews[v];
     const auto from = bytes_of(model, static_cast<std::size_t>(view.buffer), view.byteOffset,
                                view.byteLength, json, packed.path);
+    if (!is_draco_2_2(from))
+        json.refuse(packed.path, "found other data, expected Draco 2.2, as the extension says");
+    const std::uint64_t most = most_draco_elements_per_byte * from.size() + 65536;
+    const auto stated = stated_draco_elements(from);
+    if (!stated) json.refuse(packed.path, "its Draco data ends in its header");
+    if (*stated > most)
+        json.refuse(packed.path, fmt::format("found {} points and faces in {} bytes, which cannot "
+                                             "be",
+                                             *stated, from.size()));
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(from.data()), from.size());
     draco::Decoder decoder;
@@ -148,8 +192,7 @@ void unpack_primitive(tinygltf::Model& model, tinygltf::Primitive& primitive,
                                              decoded.status().error_msg_string()));
     const std::unique_ptr<draco::Mesh> mesh = std::move(decoded).value();
     const std::size_t points = mesh->num_points(), faces = mesh->num_faces();
-    if (points == 0 || faces == 0 ||
-        points + faces > most_draco_elements_per_byte * from.size() + 65536)
+    if (points == 0 || faces == 0 || points + faces > most)
         json.refuse(packed.path, fmt::format("found {} points and {} faces in {} bytes", points,
                                              faces, from.size()));
     if (primitive.indices >= 0) {

@@ -53,17 +53,24 @@ std::string glb_of(const std::string& json, std::string_view binary) {
     return out;
 }
 
+/// Where the files beside a .gltf are, and how large each may be.
+struct Beside {
+    std::string folder;
+    std::uint64_t most_bytes;
+};
+
 // Buffers are looked up in the scene's own folder, not in the current one and not outside; only
 // regular files are opened, never a pipe or device.
-bool is_file(const std::string& path, void* folder) {
-    const std::string& scene = *static_cast<const std::string*>(folder);
+bool is_file(const std::string& path, void* beside) {
+    const std::string& scene = static_cast<const Beside*>(beside)->folder;
     return path.rfind(scene, 0) == 0 && is_file_below(path, scene);
 }
 
 bool read_file(std::vector<unsigned char>* out, std::string* error, const std::string& path,
-               void*) {
+               void* beside) {
     try {
-        const std::string bytes = read_whole_file(path);
+        const std::string bytes =
+            read_whole_file(path, static_cast<const Beside*>(beside)->most_bytes);
         out->assign(bytes.begin(), bytes.end());
         return true;
     } catch (const Error& failure) {
@@ -206,7 +213,7 @@ GltfParts split_gltf(const std::string& file, std::string_view bytes) {
 }
 
 tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& parts,
-                          const JsonText& json) {
+                          const JsonText& json, std::uint64_t most_bytes) {
     nlohmann::json used = json.root();
     for (const char* section : unused_sections) used.erase(section);
     stand_in_for_fallbacks(used);
@@ -219,12 +226,12 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
             if (!used["buffers"][i].contains("uri"))
                 json.refuse(fmt::format("buffers[{}]", i), "'uri' is missing");
 
-    std::string folder = path.parent_path().empty() ? "." : path.parent_path().string();
+    Beside beside{path.parent_path().empty() ? "." : path.parent_path().string(), most_bytes};
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({is_file, [](const std::string& name, void*) { return name; }, read_file,
                            [](std::string*, const std::string&, const std::vector<unsigned char>&,
                               void*) { return false; },
-                           &folder});
+                           &beside});
     loader.SetImageLoader([](tinygltf::Image*, const int, std::string*, std::string*, int, int,
                              const unsigned char*, int, void*) { return true; },
                           nullptr);
@@ -235,10 +242,10 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
         text = glb_of(text, parts.binary);
         const std::vector<unsigned char> bytes(text.begin(), text.end());
         loaded = loader.LoadBinaryFromMemory(&model, &error, &warning, bytes.data(),
-                                             static_cast<unsigned>(bytes.size()), folder);
+                                             static_cast<unsigned>(bytes.size()), beside.folder);
     } else {
         loaded = loader.LoadASCIIFromString(&model, &error, &warning, text.data(),
-                                            static_cast<unsigned>(text.size()), folder);
+                                            static_cast<unsigned>(text.size()), beside.folder);
     }
     if (!loaded || !error.empty())
         json.refuse("", error.empty() ? "cannot be read as glTF" : first_line(error));

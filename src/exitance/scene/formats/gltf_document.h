@@ -35,9 +35,10 @@ GltfParts split_gltf(const std::string& file, std::string_view bytes);
 void check_gltf(const JsonText& json);
 
 /// The model with its buffers, nothing decoded that the reader does not use (images, animations,
-/// skins). Throws Error(bad_input), also for buffers that are missing or shorter than they say.
+/// skins). Throws Error(bad_input), also for buffers that are missing, shorter than they say or in
+/// files larger than `most_bytes`.
 tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& parts,
-                          const JsonText& json);
+                          const JsonText& json, std::uint64_t most_bytes);
 
 /// Bounds-checked reading of one accessor, sparse ones too.
 class GltfAccessor {

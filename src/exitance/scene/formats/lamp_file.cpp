@@ -26,16 +26,20 @@ bool is_lamp_file(const std::filesystem::path& path) {
     return extension == ".ies" || extension == ".ldt";
 }
 
-LampFile read_lamp_file(const std::filesystem::path& path, std::uint32_t lamp_set) {
+LampFile read_lamp_file(const std::filesystem::path& path, std::uint32_t lamp_set,
+                        const ReadOptions& options) {
+    const auto whole = [&](const std::filesystem::path& file) {
+        return read_whole_file(file, options.most_bytes());
+    };
     const std::string extension = extension_of(path);
-    if (extension == ".ldt") return parse_eulumdat(path.string(), read_whole_file(path), lamp_set);
+    if (extension == ".ldt") return parse_eulumdat(path.string(), whole(path), lamp_set);
     if (extension != ".ies")
         throw Error({path.string(), 0, 0},
                     "not a photometric file, expected IES LM-63 (.ies) or EULUMDAT (.ldt)");
     if (lamp_set != 1) throw Error({path.string(), 0, 0}, "an IES file has one set of lamps only");
-    return parse_ies(path.string(), read_whole_file(path), [&](const std::string& name) {
+    return parse_ies(path.string(), whole(path), [&](const std::string& name) {
         const std::filesystem::path beside = path.parent_path() / name;
-        return TiltFile{beside.string(), read_whole_file(beside)};
+        return TiltFile{beside.string(), whole(beside)};
     });
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exitance/scene/photometry.h"
+#include "exitance/scene/read_options.h"
 #include "exitance/scene/scene.h"
 
 namespace exitance {
@@ -25,6 +26,7 @@ bool is_lamp_file(const std::filesystem::path& path);
 
 /// Reads IES LM-63 (.ies) or EULUMDAT (.ldt); `lamp_set` from 1 picks one of the sets of lamps of
 /// an EULUMDAT file. Throws Error(bad_input) with file:line:column.
-LampFile read_lamp_file(const std::filesystem::path& path, std::uint32_t lamp_set = 1);
+LampFile read_lamp_file(const std::filesystem::path& path, std::uint32_t lamp_set = 1,
+                        const ReadOptions& options = {});
 
 }  // namespace exitance

@@ -14,8 +14,11 @@ namespace exitance {
 
 namespace {
 
-constexpr std::uint32_t most_in_a_row = 1000;
-constexpr std::size_t most_lamps = 100'000;  // of one table
+constexpr std::uint32_t most_in_a_row = 10'000;
+
+std::uint32_t in_a_row(const TomlTable& table, const char* key) {
+    return table.count(key, 1, most_in_a_row).value_or(1);
+}
 
 }  // namespace
 
@@ -53,20 +56,19 @@ Vec3 lamp_aim(const TomlTable& table, const Vec3& position, const std::optional<
     return direction(table, "aim", otherwise.value_or(Vec3{}));
 }
 
+std::uint64_t lamp_count(const TomlTable& table) {
+    return std::uint64_t{in_a_row(table, "columns")} * in_a_row(table, "rows");
+}
+
 std::vector<Vec3> lamp_positions(const TomlTable& table) {
     const Vec3 middle = *table.vector("position");
-    const std::uint32_t columns = table.count("columns", 1, most_in_a_row).value_or(1);
-    const std::uint32_t rows = table.count("rows", 1, most_in_a_row).value_or(1);
+    const std::uint32_t columns = in_a_row(table, "columns"), rows = in_a_row(table, "rows");
     if (columns * rows == 1) {
         if (table.has("spacing"))
             throw Error(table.place("spacing"),
                         "found 'spacing' of a single lamp, expected 'columns' or 'rows' with it");
         return {middle};
     }
-    if (std::size_t{columns} * rows > most_lamps)
-        throw Error(table.place("rows"), fmt::format("found {} lamps in one table, expected at "
-                                                     "most {}",
-                                                     std::size_t{columns} * rows, most_lamps));
     table.require("spacing");
     const std::vector<double> spacing =
         *table.numbers("spacing", 2, -limits::coordinate, limits::coordinate);

@@ -19,6 +19,9 @@ double lamp_factor(const TomlTable& table);
 /// `aim`, or the way to `target`; unit. Nothing given: `otherwise`, or an error without it.
 Vec3 lamp_aim(const TomlTable& table, const Vec3& position, const std::optional<Vec3>& otherwise);
 
+/// `columns` × `rows`.
+std::uint64_t lamp_count(const TomlTable& table);
+
 /// Places of `columns` × `rows` lamps, `spacing` apart along x and z turned by `array_rotation`,
 /// around `position`.
 std::vector<Vec3> lamp_positions(const TomlTable& table);

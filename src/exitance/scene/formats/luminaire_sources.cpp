@@ -103,7 +103,7 @@ std::shared_ptr<const Photometry> LuminaireReader::photometry(const TomlTable& t
     const std::uint32_t set = table.count("lamp_set", 1, 1000).value_or(1);
     auto& kept = files_[fmt::format("{} {}", set, file.string())];
     if (!kept) {
-        LampFile lamp = read_lamp_file(file, set);
+        LampFile lamp = read_lamp_file(file, set, options_);
         for (Problem& warning : lamp.warnings) scene_.warnings.push_back(std::move(warning));
         kept = std::make_shared<const Photometry>(std::move(lamp.photometry));
     }

@@ -86,8 +86,18 @@ void LuminaireReader::add(const TomlTable& table) {
     const std::string shape = table.text("shape").value_or("");
     const bool source = table.has("file") || shape == "point" || shape == "spot";
     const std::string name = *table.text("name");
+    lamps_ += lamp_count(table);
+    if (lamps_ > options_.max_luminaires)
+        throw Error(table.has("rows") ? table.place("rows") : table.place(),
+                    fmt::format("with this the project has {} lamps, more than {}; "
+                                "--max-luminaires raises the limit",
+                                lamps_, options_.max_luminaires));
     const std::vector<Vec3> positions = lamp_positions(table);
     for (std::size_t i = 0; i < positions.size(); ++i) {
+        if (scene_.polygons.size() > options_.max_polygons)
+            throw Error(table.place(), fmt::format("with this array the scene has more than {} "
+                                                   "polygons; --max-polygons raises the limit",
+                                                   options_.max_polygons));
         const std::string own = positions.size() == 1 ? name : fmt::format("{} {}", name, i + 1);
         source ? add_source(table, own, positions[i]) : add_area(table, own, positions[i]);
     }

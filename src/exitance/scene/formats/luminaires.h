@@ -10,6 +10,7 @@
 
 #include "exitance/scene/formats/lamp_file.h"
 #include "exitance/scene/formats/toml_table.h"
+#include "exitance/scene/read_options.h"
 #include "exitance/scene/scene.h"
 
 namespace exitance {
@@ -19,8 +20,8 @@ namespace exitance {
 class LuminaireReader {
   public:
     /// Files are looked up in `folder`.
-    LuminaireReader(Scene& scene, std::filesystem::path folder)
-        : scene_(scene), folder_(std::move(folder)) {}
+    LuminaireReader(Scene& scene, std::filesystem::path folder, const ReadOptions& options)
+        : scene_(scene), folder_(std::move(folder)), options_(options) {}
 
     /// One table: a lamp, or rows and columns of it. Throws Error(bad_input).
     void add(const TomlTable& table);
@@ -34,6 +35,8 @@ class LuminaireReader {
 
     Scene& scene_;
     std::filesystem::path folder_;
+    const ReadOptions& options_;
+    std::uint64_t lamps_ = 0;                                         ///< so far
     std::map<std::string, std::shared_ptr<const Photometry>> files_;  ///< by path and set of lamps
     std::map<const Photometry*, std::shared_ptr<const Photometry>> housed_;  ///< with a housing
 };

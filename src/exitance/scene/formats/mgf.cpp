@@ -194,7 +194,7 @@ void MgfReader::luminaire(Words words) {
     auto& photometry = photometries_[path];
     if (!photometry) {
         try {
-            LampFile lamp = read_lamp_file(path);
+            LampFile lamp = read_lamp_file(path, 1, options_);
             for (const Problem& problem : lamp.warnings)
                 warnings_.add(problem.place.text() + problem.what, problem.place, problem.what);
             photometry = std::make_shared<const Photometry>(std::move(lamp.photometry));

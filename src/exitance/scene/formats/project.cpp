@@ -10,6 +10,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 
 #include "exitance/math/transform.h"
 #include "exitance/scene/formats/daylight.h"
@@ -42,10 +43,12 @@ Transform rotation(const Vec3& a, double angle) {
 class ProjectReader {
   public:
     ProjectReader(const std::filesystem::path& path, std::string_view text,
-                  const ReadGeometry& read_geometry)
+                  const ReadGeometry& read_geometry, const ReadOptions& options)
         : path_(path),
           root_(TomlTable::parse(path.string(), text, "a project", project_keys(""))),
-          read_geometry_(read_geometry) {}
+          read_geometry_(read_geometry),
+          options_(options),
+          most_polygons_(std::min<std::uint64_t>(options.max_polygons, limits::elements)) {}
 
     Scene read() {
         scene_.title = root_.text("title").value_or(as_utf8(path_.stem().string()));
@@ -57,18 +60,18 @@ class ProjectReader {
         decide_quantity(materials, luminaires, parts);
         if (!parts.empty()) scene_.up = normalized(parts[0].placing.vector(parts[0].scene.up));
         for (Part& part : parts) {
-            if (scene_.polygons.size() + part.scene.polygons.size() > limits::elements)
+            if (scene_.polygons.size() + part.scene.polygons.size() > most_polygons_)
                 throw Error(part.place, fmt::format("with this file the scene has more than {} "
-                                                    "polygons",
-                                                    limits::elements));
+                                                    "polygons; --max-polygons raises the limit",
+                                                    most_polygons_));
             merge(scene_, std::move(part.scene), part.placing);
         }
         for (const TomlTable& table : materials) material(table);
         for (const TomlTable& table : root_.tables("polygon", project_keys("polygon")))
             polygon(table);
-        LuminaireReader lamps(scene_, path_.parent_path());
+        LuminaireReader lamps(scene_, path_.parent_path(), options_);
         for (const TomlTable& table : luminaires) lamps.add(table);
-        add_daylight(scene_, root_, path_.parent_path());
+        add_daylight(scene_, root_, path_.parent_path(), options_);
         for (const TomlTable& table : root_.tables("camera", project_keys("camera"))) camera(table);
         for (const TomlTable& table : root_.tables("grid", project_keys("grid"))) grid(table);
         // [solve] is kept as text; whoever solves knows the names.
@@ -177,9 +180,9 @@ class ProjectReader {
 
     std::vector<std::string> material_names() const {
         std::vector<std::string> names;
+        std::set<std::string> seen;
         for (const Material& material : scene_.materials)
-            if (std::find(names.begin(), names.end(), material.name) == names.end())
-                names.push_back(material.name);
+            if (seen.insert(material.name).second) names.push_back(material.name);
         return names;
     }
 
@@ -235,8 +238,8 @@ class ProjectReader {
         Material material;
         material.name = *table.text("name");
         material.place = table.place("name");
-        const auto names = material_names();
-        if (std::find(names.begin(), names.end(), material.name) != names.end())
+        const auto named = [&](const Material& other) { return other.name == material.name; };
+        if (std::any_of(scene_.materials.begin(), scene_.materials.end(), named))
             throw Error(material.place,
                         fmt::format("there is already a material {}; 'match' changes it",
                                     in_quotes(material.name)));
@@ -385,6 +388,8 @@ class ProjectReader {
     std::filesystem::path path_;
     TomlTable root_;
     const ReadGeometry& read_geometry_;
+    const ReadOptions& options_;
+    std::uint64_t most_polygons_;
     Scene scene_;
     std::optional<Quantity> quantity_;
     std::map<std::array<double, 3>, std::uint32_t> points_;
@@ -394,8 +399,8 @@ class ProjectReader {
 }  // namespace
 
 Scene parse_project(const std::filesystem::path& path, std::string_view text,
-                    const ReadGeometry& read_geometry) {
-    return ProjectReader(path, text, read_geometry).read();
+                    const ReadGeometry& read_geometry, const ReadOptions& options) {
+    return ProjectReader(path, text, read_geometry, options).read();
 }
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <functional>
 #include <string_view>
 
+#include "exitance/scene/read_options.h"
 #include "exitance/scene/scene.h"
 
 namespace exitance {
@@ -17,6 +18,6 @@ using ReadGeometry = std::function<Scene(const std::filesystem::path&, const Pla
 /// Reads a project from its `text`; files are looked up relative to `path`. Errors made by
 /// `read_geometry` pass through. Throws Error(bad_input) with file:line:column.
 Scene parse_project(const std::filesystem::path& path, std::string_view text,
-                    const ReadGeometry& read_geometry);
+                    const ReadGeometry& read_geometry, const ReadOptions& options = {});
 
 }  // namespace exitance
