@@ -181,7 +181,7 @@ TEST(DaylightKeys, WrongOnesAreRefusedWhereTheyStand) {
     std::ofstream(folder.path() / "bad.hdr") << "no picture";
     refused("[sky]\nmodel = \"map\"\nfile = \"bad.hdr\"\n", "is not a Radiance picture");
     std::ofstream(folder.path() / "bad.exr") << "no picture";
-    refused("[sky]\nmodel = \"map\"\nfile = \"bad.exr\"\n", "cannot be read");
+    refused("[sky]\nmodel = \"map\"\nfile = \"bad.exr\"\n", "is not an image file");
 }
 
 TEST(DaylightKeys, ScenesAndGridsBySpacing) {

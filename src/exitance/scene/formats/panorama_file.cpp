@@ -42,8 +42,7 @@ void check_size(std::int64_t width, std::int64_t height, std::uint64_t densest,
 
 Panorama checked(Panorama panorama) {
     for (const float value : panorama.pixels)
-        if (!(value >= 0 && value <= 1e30f))
-            refuse("has values that are negative or no numbers");
+        if (!(value >= 0 && value <= 1e30f)) refuse("has values that are negative or no numbers");
     return panorama;
 }
 
@@ -115,8 +114,8 @@ Panorama decode_exr(std::string_view bytes, const ReadOptions& options) {
         Imf::FrameBuffer frame;
         for (std::size_t c = 0; c < (grey ? 1u : 3u); ++c)
             frame.insert(grey ? "Y" : names[c],
-                         Imf::Slice::Make(Imf::FLOAT, &planes[c * w * lines], window,
-                                          sizeof(float), w * sizeof(float)));
+                         Imf::Slice::Make(Imf::FLOAT, &planes[c * w * lines], window, sizeof(float),
+                                          w * sizeof(float)));
         file.setFrameBuffer(frame);
         file.readPixels(first, last);
         for (std::size_t i = 0; i < w * lines; ++i)
