@@ -139,6 +139,17 @@ TEST(DaylightKeys, PicturesHaveALargestSizeAndFillIt) {
                   read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky.hdr\"\n");
               }).find("16384 × 8192 pixels, but has only"),
               std::string::npos);
+    // Runs of no length, as a file that ends has them for a careless reader, fill no line.
+    for (const std::string runs :
+         {std::string("\2\2\0\20\0\0", 6), std::string("\2\2\0\20\220\1", 6)}) {
+        folder.write("sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + runs);
+        const std::string said =
+            testing::refusal([&] { read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky.hdr\"\n"); });
+        EXPECT_NE(
+            said.find(runs.size() > 4 && runs[4] == 0 ? "run that cannot be" : "ends too early"),
+            std::string::npos)
+            << said;
+    }
     write_image(Image(32, 64), folder.path() / "sky.hdr");
     EXPECT_NE(testing::refusal([&] {
                   read(folder, "[sky]\nmodel = \"map\"\nfile = \"sky.hdr\"\n");

@@ -52,6 +52,46 @@ constexpr std::uint64_t densest_hdr = 16;
 constexpr std::uint64_t densest_exr = 64 * 1032;
 constexpr std::size_t lines_at_once = 256;  // of the largest compressed block
 
+// Where the pixels of a Radiance picture begin: after the empty line and the line of its size.
+std::size_t begin_of_pixels(std::string_view bytes) {
+    const std::size_t empty = bytes.find("\n\n");
+    const std::size_t end = empty == bytes.npos ? empty : bytes.find('\n', empty + 2);
+    if (end == bytes.npos || bytes.substr(0, end).find('\0') != bytes.npos)
+        refuse("is not a Radiance picture (.hdr)");
+    return end + 1;
+}
+
+// Runs fill their lines (Ward 1991, "Real Pixels", Graphics Gems II). stb_image waits for ever for
+// a run of no length to do so, such as it reads behind the end of a file.
+void check_runs(std::string_view bytes, std::size_t width, std::size_t height) {
+    std::size_t at = begin_of_pixels(bytes);
+    const auto check_pixels = [&] {
+        if (4 * width * height > bytes.size() - at) refuse("ends too early");
+    };
+    if (width < 8 || width >= 32768) return check_pixels();
+    const auto next = [&] {
+        if (at >= bytes.size()) refuse("ends too early");
+        return static_cast<unsigned char>(bytes[at++]);
+    };
+    for (std::size_t y = 0; y < height; ++y) {
+        const std::size_t begin = at;
+        const unsigned first = next(), second = next(), high = next();
+        if (first != 2 || second != 2 || high >= 128) {  // pixel by pixel
+            if (y > 0) refuse("has a line without runs below lines of runs");
+            at = begin;
+            return check_pixels();
+        }
+        next();
+        for (int component = 0; component < 4; ++component)
+            for (std::size_t filled = 0; filled < width;) {
+                const std::size_t code = next(), count = code > 128 ? code - 128 : code;
+                if (count == 0 || count > width - filled) refuse("has a run that cannot be");
+                filled += count;
+                at += code > 128 ? 1 : count;
+            }
+    }
+}
+
 // OpenEXR's way to bytes in memory.
 class ExrBytes : public Imf::IStream {
   public:
@@ -84,6 +124,7 @@ Panorama decode_hdr(std::string_view bytes, const ReadOptions& options) {
         !stbi_info_from_memory(data, size, &width, &height, &channels))
         refuse("is not a Radiance picture (.hdr)");
     check_size(width, height, densest_hdr, bytes, options);
+    check_runs(bytes, static_cast<std::size_t>(width), static_cast<std::size_t>(height));
     const std::unique_ptr<float, void (*)(void*)> pixels(
         stbi_loadf_from_memory(data, size, &width, &height, &channels, 3), stbi_image_free);
     if (!pixels) refuse(fmt::format("cannot be read: {}", stbi_failure_reason()));
