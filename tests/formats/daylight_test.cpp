@@ -140,7 +140,7 @@ TEST(DaylightKeys, PicturesHaveALargestSizeAndFillIt) {
               }).find("16384 × 8192 pixels, but has only"),
               std::string::npos);
     // Runs of no length, as a file that ends has them for a careless reader, fill no line.
-    for (const std::string runs :
+    for (const std::string& runs :
          {std::string("\2\2\0\20\0\0", 6), std::string("\2\2\0\20\220\1", 6)}) {
         folder.write("sky.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8 +X 16\n" + runs);
         const std::string said =
