@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -191,7 +190,6 @@ TEST(ProjectLuminaires, AnotherProjectBringsItsLampsAlong) {
 }
 
 TEST(ProjectLuminaires, ArraysWithoutEndAreRefusedAtOnce) {
-    const auto begin = std::chrono::steady_clock::now();
     const Folder folder;
     const auto spheres = [](int columns, int rows, int tables) {
         std::string out;
@@ -207,8 +205,10 @@ TEST(ProjectLuminaires, ArraysWithoutEndAreRefusedAtOnce) {
     ReadOptions options;
     options.max_luminaires = 119'999;
     options.max_polygons = 1;
-    expect_refused([&] { read_scene(many, options); }, many.string() + ":1:1",
-                   "--max-polygons raises the limit");
+    EXPECT_TRUE(testing::quick([&] {
+        expect_refused([&] { read_scene(many, options); }, many.string() + ":1:1",
+                       "--max-polygons raises the limit");
+    }));
     const auto points = folder.write("points.toml", [&] {
         std::string text = spheres(20, 30, 2);
         for (std::size_t at; (at = text.find("\"sphere\"\nradius = 1")) != std::string::npos;)
@@ -221,8 +221,6 @@ TEST(ProjectLuminaires, ArraysWithoutEndAreRefusedAtOnce) {
                    "1200 lamps, more than 1199; --max-luminaires raises the limit");
     options.max_luminaires = 1200;
     EXPECT_EQ(read_scene(points, options).luminaires.size(), 1200U);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    EXPECT_LT(took.count(), 1);
 }
 
 TEST(ProjectLuminaires, RefusalsNameThePlace) {

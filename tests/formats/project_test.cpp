@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <chrono>
 #include <map>
 #include <numbers>
 
@@ -415,20 +414,19 @@ TEST(Project, FilesThatNameEachOtherComeToAnEnd) {
         const std::string before = "[[geometry]]\nfile = \"p" + std::to_string(i - 1) + ".toml\"\n";
         folder.write("p" + std::to_string(i) + ".toml", before + before);
     }
-    const auto begin = std::chrono::steady_clock::now();
-    EXPECT_NE(testing::refusal([&] { read_scene(folder.path() / "p29.toml"); }).find("--max-files"),
-              std::string::npos);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+    EXPECT_TRUE(testing::quick([&] {
+        EXPECT_NE(
+            testing::refusal([&] { read_scene(folder.path() / "p29.toml"); }).find("--max-files"),
+            std::string::npos);
+    }));
 }
 
 TEST(Project, ManyMaterialsTakeLittleTime) {
     std::string text;
     for (int i = 0; i < 4000; ++i)
         text += "[[material]]\nname = \"m" + std::to_string(i) + "\"\nreflectance = 0.5\n";
-    const auto begin = std::chrono::steady_clock::now();
-    EXPECT_EQ(parse(text).materials.size(), 4000U);
     // A search through all names for each pair of materials took minutes.
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+    EXPECT_TRUE(testing::quick([&] { EXPECT_EQ(parse(text).materials.size(), 4000U); }));
 }
 
 RC_GTEST_PROP(Project, AnyMutationIsReadOrRefused, ()) {

@@ -110,6 +110,29 @@ inline bool sound_within(std::size_t megabytes, const std::function<void()>& rea
     return WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
+/// Whether `read` took at most a second of processor time, of processes that it waited for too; ten
+/// under the sanitizers.
+inline bool quick(const std::function<void()>& read) {
+    const auto spent = [] {
+        double seconds = 0;
+        for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+            rusage used{};
+            ::getrusage(who, &used);
+            for (const timeval& t : {used.ru_utime, used.ru_stime})
+                seconds += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+        }
+        return seconds;
+    };
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    constexpr double most = 10;
+#else
+    constexpr double most = 1;
+#endif
+    const double begin = spent();
+    read();
+    return spent() - begin < most;
+}
+
 /// A real scene that lies beside the project, if it is there.
 inline std::optional<std::filesystem::path> beside_project(const std::string& name) {
     const auto path =
