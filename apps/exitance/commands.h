@@ -9,6 +9,7 @@ class App;
 namespace exitance::cli {
 
 void add_convert(CLI::App& app);
+void add_exchange(CLI::App& app);
 void add_form_factors(CLI::App& app);
 void add_info(CLI::App& app);
 void add_manual(CLI::App& app);

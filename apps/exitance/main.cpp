@@ -35,6 +35,7 @@ void add_commands(CLI::App& app) {
     exitance::cli::add_render(app);
     exitance::cli::add_probe(app);
     exitance::cli::add_form_factors(app);
+    exitance::cli::add_exchange(app);
     exitance::cli::add_convert(app);
     exitance::cli::add_info(app);
     exitance::cli::add_prorad(app);

@@ -11,37 +11,13 @@
 #include <ostream>
 #include <string_view>
 
+#include "csv_cells.h"
 #include "exitance/run/error.h"
 #include "exitance/scene/formats/limits.h"
 
 namespace exitance::cli {
 
 namespace {
-
-struct Cell {
-    std::string_view text;
-    std::size_t column;  ///< of its first character, from 1
-};
-
-std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-/// The cells of a line; a quoted cell keeps its quotes, and its commas do not count.
-std::vector<Cell> cells_of(std::string_view line) {
-    std::vector<Cell> out;
-    std::size_t start = 0;
-    bool quoted = false;
-    for (std::size_t i = 0; i <= line.size(); ++i) {
-        if (i < line.size() && line[i] == '"') quoted = !quoted;
-        if (i < line.size() && (line[i] != ',' || quoted)) continue;
-        out.push_back({trimmed(line.substr(start, i - start)), start + 1});
-        start = i + 1;
-    }
-    return out;
-}
 
 constexpr std::array<std::string_view, 6> names{"x", "y", "z", "nx", "ny", "nz"};
 
@@ -52,10 +28,7 @@ Indices find_columns(const std::vector<Cell>& header, const std::string& name) {
     for (std::size_t k = 0; k < names.size(); ++k) {
         std::optional<std::size_t> found;
         for (std::size_t i = 0; i < header.size(); ++i) {
-            std::string_view text = header[i].text;
-            if (text.size() >= 2 && text.front() == '"' && text.back() == '"')
-                text = text.substr(1, text.size() - 2);
-            if (text != names[k]) continue;
+            if (unquoted(header[i].text) != names[k]) continue;
             if (found)
                 throw Error(Place{name, 1, header[i].column},
                             fmt::format("found a second column '{}'", names[k]));
@@ -81,13 +54,6 @@ double number_of(const Cell& cell, std::string_view column, const Place& line) {
         throw Error(Place{line.file, line.line, cell.column},
                     fmt::format("found {} = {}, expected at most 1e9 m", column, cell.text));
     return value;
-}
-
-/// The next line without its ending; false at the end of the input.
-bool next_line(std::istream& in, std::string& line) {
-    if (!std::getline(in, line)) return false;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    return true;
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "csv_cells.h"
 #include "exitance/run/atomic_file.h"
 #include "exitance/solution/file.h"
 #include "exitance/solution/light_scenes.h"
@@ -28,14 +29,6 @@ std::string lower(std::string text) {
     for (char& c : text)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return text;
-}
-
-/// A name as a cell of a table: in quotes where it needs them.
-std::string cell(const std::string& name) {
-    if (name.find_first_of(",\"\r\n") == std::string::npos) return name;
-    std::string quoted = "\"";
-    for (const char c : name) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
 }
 
 class ProbeCommand {
@@ -117,11 +110,12 @@ class ProbeCommand {
 
     std::vector<std::string> column_names(const Solution& solution) const {
         std::vector<std::string> names;
-        for (const std::string& band : solution.bands) names.push_back(cell("E_" + lower(band)));
+        for (const std::string& band : solution.bands)
+            names.push_back(csv_cell("E_" + lower(band)));
         if (per_group_)
             for (const LightGroup& group : solution.groups)
                 for (const std::string& band : solution.bands)
-                    names.push_back(cell("E_" + group.name + "_" + lower(band)));
+                    names.push_back(csv_cell("E_" + group.name + "_" + lower(band)));
         return names;
     }
 
