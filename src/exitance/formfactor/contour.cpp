@@ -15,6 +15,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t most_segments = 32;
+constexpr double most_parts = 1024;
 
 // Gauss & Legendre's rule of four points on [0, 1].
 constexpr std::array<double, 4> abscissa{0.06943184420297371, 0.33000947820757187,
@@ -23,8 +24,8 @@ constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307,
                                        0.32607257743127307, 0.17392742256872693};
 
 // ∫∫ ln r ds dt over two edges, s and t from 0 to 1.
-double mean_logarithm(const Vec3& a, const Vec3& along_a, const Vec3& b, const Vec3& along_b,
-                      std::size_t segments) {
+double mean_logarithm(const Vec3& a, const Vec3& along_a, std::size_t segments_a, const Vec3& b,
+                      const Vec3& along_b, std::size_t segments_b) {
     const double size = dot(along_a, along_a) + dot(along_b, along_b);
     const double close = 1e-24 * size;
     const Vec3 a_end = a + along_a, b_end = b + along_b;
@@ -32,22 +33,34 @@ double mean_logarithm(const Vec3& a, const Vec3& along_a, const Vec3& b, const V
     // The same edge on both: ∫∫ ln(L |s − t|) = ln L − 3/2.
     if ((same(a, b) && same(a_end, b_end)) || (same(a, b_end) && same(a_end, b)))
         return 0.5 * std::log(dot(along_a, along_a)) - 1.5;
-    const double step = 1.0 / static_cast<double>(segments);
+    const double step_a = 1.0 / static_cast<double>(segments_a),
+                 step_b = 1.0 / static_cast<double>(segments_b);
     double sum = 0;
-    for (std::size_t i = 0; i < 4 * segments; ++i) {
-        const Vec3 x = a + along_a * ((static_cast<double>(i / 4) + abscissa[i % 4]) * step);
-        for (std::size_t j = 0; j < 4 * segments; ++j) {
-            const Vec3 y = b + along_b * ((static_cast<double>(j / 4) + abscissa[j % 4]) * step);
-            sum += weight[i % 4] * weight[j % 4] * std::log(std::max(dot(x - y, x - y), close));
+    for (std::size_t i = 0; i < 4 * segments_a; ++i) {
+        const Vec3 x = a + along_a * ((static_cast<double>(i / 4) + abscissa[i % 4]) * step_a);
+        double inner = 0;
+        for (std::size_t j = 0; j < 4 * segments_b; ++j) {
+            const Vec3 y = b + along_b * ((static_cast<double>(j / 4) + abscissa[j % 4]) * step_b);
+            inner += weight[j % 4] * std::log(std::max(dot(x - y, x - y), close));
         }
+        sum += weight[i % 4] * inner;
     }
-    return 0.5 * sum * step * step;
+    return 0.5 * sum * step_a * step_b;
 }
 
 }  // namespace
 
 double contour_exchange_area(std::span<const Vec3> a, std::span<const Vec3> b,
                              std::size_t segments) {
+    double shortest = INFINITY;
+    for (const auto& outline : {a, b})
+        for (std::size_t i = 0; i < outline.size(); ++i)
+            shortest = std::min(shortest, length(outline[(i + 1) % outline.size()] - outline[i]));
+    const auto parts = [&](const Vec3& edge) {
+        const double times = std::min(length(edge) / shortest, most_parts);
+        return static_cast<std::size_t>(
+            std::clamp(std::round(static_cast<double>(segments) * times), 1.0, most_parts));
+    };
     double sum = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
         const Vec3 along_a = a[(i + 1) % a.size()] - a[i];
@@ -55,7 +68,8 @@ double contour_exchange_area(std::span<const Vec3> a, std::span<const Vec3> b,
             const Vec3 along_b = b[(j + 1) % b.size()] - b[j];
             const double turned = dot(along_a, along_b);
             if (turned == 0) continue;
-            sum += turned * mean_logarithm(a[i], along_a, b[j], along_b, segments);
+            sum += turned *
+                   mean_logarithm(a[i], along_a, parts(along_a), b[j], along_b, parts(along_b));
         }
     }
     return std::max(0.0, sum / (2 * std::numbers::pi));

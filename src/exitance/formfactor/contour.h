@@ -9,7 +9,8 @@
 namespace exitance {
 
 /// A_i F_ij of two convex outlines that lie before each other's front [m²]:
-/// (1/2π) ∮∮ ln r dr_i · dr_j, each edge cut into `segments` with four Gauss points.
+/// (1/2π) ∮∮ ln r dr_i · dr_j, the shortest edge cut into `segments` with four Gauss points, others
+/// into as many more as they are longer, at most 1024.
 double contour_exchange_area(std::span<const Vec3> a, std::span<const Vec3> b,
                              std::size_t segments);
 

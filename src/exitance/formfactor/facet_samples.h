@@ -26,7 +26,8 @@ struct FacetCell {
     double area;
 };
 
-/// `side`² cells: a quadrilateral's grid, a triangle's similar triangles.
+/// About `side`² cells: a quadrilateral's grid of nearly square ones, a triangle's similar
+/// triangles.
 std::vector<FacetCell> facet_cells(const Facet& facet, std::size_t side);
 
 }  // namespace exitance

@@ -48,7 +48,7 @@ class Hemicube {
     std::vector<float> nearness_;      ///< 1 / depth
 };
 
-/// Hemicubes stand in the middle of cells of a facet: 1, 4, 16, 64 until that changes no factor by
+/// Hemicubes stand in the middle of cells of a facet: 4, 16, 64 until that changes no factor by
 /// more than the accuracy; `samples` sets their number, to the next square. `resolution` is
 /// 4 / √accuracy if it is not set, between 32 and 1024.
 FormFactorMatrix hemicube_form_factors(const MethodCall& call);

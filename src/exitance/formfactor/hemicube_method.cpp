@@ -84,7 +84,7 @@ FormFactorMatrix hemicube_form_factors(const MethodCall& call) {
             };
             std::size_t side =
                 options.samples ? static_cast<std::size_t>(std::ceil(std::sqrt(*options.samples)))
-                                : 1;
+                                : 2;
             std::vector<double> row = estimate(side);
             while (!options.samples) {
                 std::vector<double> finer = estimate(2 * side);
