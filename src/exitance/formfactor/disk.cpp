@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "exitance/formfactor/blockers.h"
+#include "exitance/formfactor/facet_caster.h"
 #include "exitance/formfactor/facet_samples.h"
 #include "exitance/formfactor/pairs_of_facets.h"
 

@@ -77,11 +77,11 @@ Hemicube::Hemicube(std::size_t resolution) : resolution_(resolution) {
 }
 
 void Hemicube::look(const Vec3& eye, const Frame& frame, const Enclosure& enclosure,
-                    std::span<const Blocker> blockers) {
-    std::fill(item_.begin(), item_.end(), Blocker::none);
+                    std::span<const BlockingFacet> blockers) {
+    std::fill(item_.begin(), item_.end(), BlockingFacet::none);
     std::fill(nearness_.begin(), nearness_.end(), 0.0f);
     std::array<Vec3, 4> local;
-    for (const Blocker& blocker : blockers) {
+    for (const BlockingFacet& blocker : blockers) {
         const Facet& facet = enclosure.facets[blocker.front];
         const double height = dot(eye - facet.outline[0], facet.normal);
         bool above = false;
@@ -93,8 +93,8 @@ void Hemicube::look(const Vec3& eye, const Frame& frame, const Enclosure& enclos
         // Below the horizon, or seen edge on.
         if (!above || std::abs(height) <= 1e-9 * std::sqrt(facet.area)) continue;
         std::uint32_t item = height > 0 ? blocker.front : blocker.back;
-        if (item != Blocker::none && enclosure.facets[item].row == Facet::only_blocks)
-            item = Blocker::none;
+        if (item != BlockingFacet::none && enclosure.facets[item].row == Facet::only_blocks)
+            item = BlockingFacet::none;
         for (std::size_t face = 0; face < 5; ++face)
             draw(std::span(local.data(), facet.count), face, item);
     }

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "exitance/formfactor/blockers.h"
+#include "exitance/formfactor/facet_caster.h"
 #include "exitance/formfactor/method.h"
 #include "exitance/math/frame.h"
 
@@ -21,13 +21,13 @@ class Hemicube {
 
     /// Draws what is seen from `eye` in the directions of `frame`; what is drawn before is gone.
     void look(const Vec3& eye, const Frame& frame, const Enclosure& enclosure,
-              std::span<const Blocker> blockers);
+              std::span<const BlockingFacet> blockers);
 
     /// Calls visit(facet, delta form factor) for every cell in which a facet shows its front.
     template <class Visit>
     void visit_cells(const Visit& visit) const {
         for (std::size_t c = 0; c < item_.size(); ++c)
-            if (item_[c] != Blocker::none) visit(item_[c], delta(c));
+            if (item_[c] != BlockingFacet::none) visit(item_[c], delta(c));
     }
 
     /// Over all cells it is 1: the factors are the exact ones of the cells' rectangles, where the

@@ -30,7 +30,7 @@ Frame rotated(const Vec3& normal, double angle) {
 
 class HemicubeRow {
   public:
-    HemicubeRow(const MethodCall& call, std::span<const Blocker> blockers)
+    HemicubeRow(const MethodCall& call, std::span<const BlockingFacet> blockers)
         : call_(call), blockers_(blockers), hemicube_(resolution_of(call.options)) {}
 
     // The mean over side² places of the facet, added to `row` times `share`.
@@ -55,7 +55,7 @@ class HemicubeRow {
 
   private:
     const MethodCall& call_;
-    std::span<const Blocker> blockers_;
+    std::span<const BlockingFacet> blockers_;
     Hemicube hemicube_;
 };
 
@@ -69,7 +69,7 @@ double largest_change(const std::vector<double>& a, const std::vector<double>& b
 
 FormFactorMatrix hemicube_form_factors(const MethodCall& call) {
     const MethodOptions& options = call.options;
-    const std::vector<Blocker> blockers = find_blockers(call.enclosure);
+    const std::vector<BlockingFacet> blockers = blocking_facets(call.enclosure);
     const auto facets = facets_of_rows(call.enclosure);
     FormFactorMatrix F(surface_areas(call.enclosure));
     WorkDone done(call, static_cast<double>(facets.size()));

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "exitance/formfactor/batches.h"
-#include "exitance/formfactor/blockers.h"
+#include "exitance/formfactor/facet_caster.h"
 #include "exitance/formfactor/facet_samples.h"
 #include "exitance/formfactor/pairs_of_facets.h"
 #include "exitance/math/frame.h"
@@ -66,7 +66,7 @@ void cast(const FacetCaster& caster, const Enclosure& enclosure, const Facet& fa
             if (found.primitive[lane] == 0xffffffffU) continue;
             const std::uint32_t met =
                 caster.facet(found.primitive[lane], (found.front >> lane & 1U) != 0);
-            if (met == Blocker::none) continue;
+            if (met == BlockingFacet::none) continue;
             const std::uint32_t row = enclosure.facets[met].row;
             if (row != Facet::only_blocks) hits.add(row, batch);
         }

@@ -2,7 +2,7 @@
 // How much of what two facets exchange gets through, by rays between sampled places on both.
 #pragma once
 
-#include "exitance/formfactor/blockers.h"
+#include "exitance/formfactor/facet_caster.h"
 #include "exitance/formfactor/method.h"
 
 namespace exitance {

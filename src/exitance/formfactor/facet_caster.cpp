@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "exitance/formfactor/blockers.h"
+#include "exitance/formfactor/facet_caster.h"
 
 #include <algorithm>
 #include <map>
@@ -19,10 +19,10 @@ std::vector<Corner> place_of(const Facet& facet) {
     return key;
 }
 
-RayCaster make_caster(const Enclosure& enclosure, const std::vector<Blocker>& blockers) {
+RayCaster make_caster(const Enclosure& enclosure, const std::vector<BlockingFacet>& blockers) {
     std::vector<Vec3> points;
     std::vector<RayCaster::Face> faces;
-    for (const Blocker& blocker : blockers) {
+    for (const BlockingFacet& blocker : blockers) {
         const Facet& facet = enclosure.facets[blocker.front];
         const auto first = static_cast<std::uint32_t>(points.size());
         for (const Vec3& corner : facet.corners()) points.push_back(corner);
@@ -33,25 +33,25 @@ RayCaster make_caster(const Enclosure& enclosure, const std::vector<Blocker>& bl
 
 }  // namespace
 
-std::vector<Blocker> find_blockers(const Enclosure& enclosure) {
-    std::vector<Blocker> blockers;
+std::vector<BlockingFacet> blocking_facets(const Enclosure& enclosure) {
+    std::vector<BlockingFacet> blockers;
     std::map<std::vector<Corner>, std::size_t> known;
     for (std::size_t f = 0; f < enclosure.facets.size(); ++f) {
         const Facet& facet = enclosure.facets[f];
         const auto number = static_cast<std::uint32_t>(f);
         const auto [found, fresh] = known.try_emplace(place_of(facet), blockers.size());
         if (!fresh) {
-            Blocker& other = blockers[found->second];
+            BlockingFacet& other = blockers[found->second];
             const bool opposite = dot(enclosure.facets[other.front].normal, facet.normal) < 0;
-            if (opposite && other.back == Blocker::none) other.back = number;
+            if (opposite && other.back == BlockingFacet::none) other.back = number;
             continue;  // what is there twice is met once
         }
-        blockers.push_back({number, Blocker::none});
+        blockers.push_back({number, BlockingFacet::none});
     }
     return blockers;
 }
 
 FacetCaster::FacetCaster(const Enclosure& enclosure)
-    : blockers_(find_blockers(enclosure)), rays_(make_caster(enclosure, blockers_)) {}
+    : blockers_(blocking_facets(enclosure)), rays_(make_caster(enclosure, blockers_)) {}
 
 }  // namespace exitance

@@ -9,14 +9,14 @@
 
 namespace exitance {
 
-struct Blocker {
+struct BlockingFacet {
     static constexpr std::uint32_t none = 0xffffffffU;
     std::uint32_t front = none;  ///< facet that is seen from its front
     std::uint32_t back = none;   ///< facet with the same corners that faces the other way
 };
 
 /// Facets with the same corners, facing opposite ways, are one blocker.
-std::vector<Blocker> find_blockers(const Enclosure& enclosure);
+std::vector<BlockingFacet> blocking_facets(const Enclosure& enclosure);
 
 /// Rays against all facets. Primitive k is blocker k.
 class FacetCaster {
@@ -24,13 +24,13 @@ class FacetCaster {
     explicit FacetCaster(const Enclosure& enclosure);
 
     const RayCaster& rays() const { return rays_; }
-    /// The facet whose front a ray has met; Blocker::none for a back.
+    /// The facet whose front a ray has met; BlockingFacet::none for a back.
     std::uint32_t facet(std::uint32_t primitive, bool front) const {
         return front ? blockers_[primitive].front : blockers_[primitive].back;
     }
 
   private:
-    std::vector<Blocker> blockers_;
+    std::vector<BlockingFacet> blockers_;
     RayCaster rays_;
 };
 
