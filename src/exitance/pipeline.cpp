@@ -11,6 +11,7 @@
 #include "exitance/solution/balance.h"
 #include "exitance/solution/error_estimate.h"
 #include "exitance/solution/extract.h"
+#include "exitance/solve/element_solve.h"
 #include "exitance/solve/merge.h"
 #include "exitance/solve/shooting.h"
 
@@ -60,10 +61,21 @@ ShootingOptions shooting_options(const SolveOptions& options, double extent) {
     return out;
 }
 
-void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const Shooting& solver) {
+ElementOptions element_options(const SolveOptions& options) {
+    ElementOptions out;
+    out.solver = options.solver;
+    out.transport = options.transport;
+    if (options.element_rays) out.rays = static_cast<int>(*options.element_rays);
+    out.gather_vertices = options.vertices.value_or("gather") == "gather";
+    out.solving = {options.error, options.unshot, options.overshoot, options.seed};
+    out.column.seed = options.seed;
+    return out;
+}
+
+void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const Shooting* solver) {
     Solution so_far = extract_solution(radiosity);
-    if (snapshots.ambient) {
-        const std::vector<float> ambient = solver.ambient();
+    if (snapshots.ambient && solver) {
+        const std::vector<float> ambient = solver->ambient();
         for (std::size_t v = 0; v < so_far.irradiance.rows(); ++v) {
             const auto row = so_far.irradiance[VertexId(v)];
             for (std::size_t c = 0; c < so_far.columns(); ++c) row[c] += ambient[c];
@@ -79,14 +91,20 @@ Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
         if (observe) observe(progress);
         if (progress.shots < next) return;
         next = progress.shots + *snapshots.every;
-        take_snapshot(snapshots, radiosity, solver);
+        take_snapshot(snapshots, radiosity, &solver);
     };
+}
+
+// Options that mean nothing to adaptive shooting, which refuses them.
+bool of_elements(const std::string& name) {
+    return name == "transport" || name == "vertices" || name == "element-rays";
 }
 
 std::map<std::string, std::string> used(SolveOptions options) {
     std::map<std::string, std::string> out;
     for (const Option& option : describe(options))
-        if (option.name != "threads")  // the bytes do not depend on it
+        if (option.name != "threads" &&  // the bytes do not depend on it
+            (by_elements(options) || !of_elements(option.name)))
             out[option.name] = option.value_text();
     return out;
 }
@@ -114,11 +132,72 @@ struct Demand {
     }
 };
 
+using Counters = std::map<std::string, double>;
+
+Counters counters_of(const Radiosity& radiosity) {
+    return {{"vertices", static_cast<double>(radiosity.mesh.vertices().size())},
+            {"patches", static_cast<double>(radiosity.mesh.patches().size())},
+            {"elements", static_cast<double>(radiosity.mesh.elements().size())},
+            {"bytes", static_cast<double>(radiosity.bytes())}};
+}
+
+/// What every way to solve is given.
+struct Task {
+    const SolveOptions& options;
+    double size;
+    Stop stop;
+    const Stopwatch& clock;
+    const Observer& observe;
+    const Snapshots& snapshots;
+};
+
+struct Done {
+    EnergyBalance energy;
+    Counters counters;
+};
+
+Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
+    const SolveOptions& options = task.options;
+    ShootingOptions shooting = shooting_options(options, task.size);
+    shooting.interrupted = [&] {
+        return (task.stop.cancel && task.stop.cancel->requested()) ||
+               (options.time && task.clock.seconds() > *options.time);
+    };
+    Shooting solver(radiosity, shooting);
+    const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, solver);
+    Demand demand{options.error};
+    while (run(solver, task.stop, task.clock, watch) == Ended::converged &&
+           demand.rise(options, radiosity))
+        solver.demand(demand.error, min_area(options, demand.error, task.size));
+    if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, &solver);
+    Done out{balance(radiosity, options.seed), {}};
+    if (options.merge) merge_smooth(radiosity, solver.negligible());
+    out.counters = counters_of(radiosity);
+    out.counters["shots"] = static_cast<double>(solver.shots());
+    out.counters["rays"] = static_cast<double>(solver.rays());
+    return out;
+}
+
+Done solve_by_elements(Radiosity& radiosity, const Task& task) {
+    const ElementReport report = solve_elements(radiosity, element_options(task.options), task.stop,
+                                                task.clock, task.observe);
+    if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
+    Done out{balance(radiosity, task.options.seed), counters_of(radiosity)};
+    out.counters["rows"] = static_cast<double>(report.rows);
+    out.counters["sweeps"] = report.sweeps;
+    out.counters["residual"] = report.residual;
+    out.counters["transport_bytes"] = static_cast<double>(report.bytes);
+    out.counters["shots"] = static_cast<double>(report.shots);
+    out.counters["rays"] = static_cast<double>(report.rays);
+    return out;
+}
+
 }  // namespace
 
 Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe,
                const Cancel* cancel, const Snapshots& snapshots) {
     require_polygons(scene);
+    require_possible(options);
     const tbb::global_control threads(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
@@ -127,30 +206,16 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     const double size = extent(scene);
     Radiosity radiosity(scene, make_groups(scene, grouping_of(options.groups)),
                         mesh_options(options, size));
-    ShootingOptions shooting = shooting_options(options, size);
-    shooting.interrupted = [&] {
-        return (cancel && cancel->requested()) || (options.time && clock.seconds() > *options.time);
-    };
-    Shooting solver(radiosity, shooting);
-    const Stop stop{options.unshot, options.time, options.next_shot, cancel};
-    const Observer watch = with_snapshots(observe, snapshots, radiosity, solver);
-    Demand demand{options.error};
-    while (run(solver, stop, clock, watch) == Ended::converged && demand.rise(options, radiosity))
-        solver.demand(demand.error, min_area(options, demand.error, size));
-    if (snapshots.take) take_snapshot(snapshots, radiosity, solver);
-    const EnergyBalance energy = balance(radiosity, options.seed);
-    if (options.merge) merge_smooth(radiosity, solver.negligible());
+    const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
+                    clock,   observe, snapshots};
+    const Done done = by_elements(options) ? solve_by_elements(radiosity, task)
+                                           : shoot_adaptively(radiosity, task);
 
     Solution solution = extract_solution(radiosity);
-    solution.energy = energy;
+    solution.energy = done.energy;
     solution.error = estimate_error(solution, options.seed);
     solution.options = used(options);
-    solution.counters = {{"shots", static_cast<double>(solver.shots())},
-                         {"rays", static_cast<double>(solver.rays())},
-                         {"vertices", static_cast<double>(radiosity.mesh.vertices().size())},
-                         {"patches", static_cast<double>(radiosity.mesh.patches().size())},
-                         {"elements", static_cast<double>(radiosity.mesh.elements().size())},
-                         {"bytes", static_cast<double>(radiosity.bytes())}};
+    solution.counters = done.counters;
     return solution;
 }
 

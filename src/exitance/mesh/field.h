@@ -48,5 +48,6 @@ class Field {
 using VertexField = Field<VertexId>;
 using ElementField = Field<ElementId>;
 using PatchField = Field<PatchId>;
+using RowField = Field<RowId>;
 
 }  // namespace exitance

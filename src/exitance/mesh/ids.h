@@ -23,6 +23,7 @@ using PolygonId = Id<struct PolygonTag>;    ///< into Scene::polygons
 using FaceId = Id<struct FaceTag>;          ///< one side of a polygon
 using PatchId = Id<struct PatchTag>;        ///< what shoots
 using ElementId = Id<struct ElementTag>;    ///< node of a quadtree under a patch
+using RowId = Id<struct RowTag>;            ///< a leaf element as a row of the linear system
 using VertexId = Id<struct VertexTag>;      ///< where light is received
 using PositionId = Id<struct PositionTag>;  ///< a place; vertices of several faces may share it
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace exitance {
 
@@ -22,6 +23,10 @@ struct Progress {
     std::uint64_t rays = 0;  ///< visibility rays so far
     std::uint64_t vertices = 0;
     std::optional<double> error;  ///< RMS relative error of irradiance, once estimated
+    // Of solvers of the linear system of elements:
+    std::optional<double> sweeps;    ///< work so far in products with the whole matrix
+    std::optional<double> residual;  ///< of the system, relative to that at the start
+    std::vector<double> exitance{};  ///< luminance of B, of small systems alone
 };
 
 using Observer = std::function<void(const Progress&)>;

@@ -28,23 +28,6 @@ struct Sender {
     bool covered;  ///< partly: what its covered part seems to send never was
 };
 
-Vec3 point_on(const Sender& s, UnitSquare u) {
-    if (s.count == 3) {
-        const auto w = uniform_triangle(u);
-        return s.corners[0] * w[0] + s.corners[1] * w[1] + s.corners[2] * w[2];
-    }
-    // Two triangles in proportion to their areas.
-    const double first = length(cross(s.corners[1] - s.corners[0], s.corners[2] - s.corners[0]));
-    const double second = length(cross(s.corners[2] - s.corners[0], s.corners[3] - s.corners[0]));
-    const double share = first / (first + second);
-    const bool in_first = u[0] < share;
-    u[0] = in_first ? u[0] / share : (u[0] - share) / (1.0 - share);
-    const auto w = uniform_triangle({std::min(u[0], 1.0 - 1e-12), u[1]});
-    const Vec3 &b = in_first ? s.corners[1] : s.corners[2],
-               &c = in_first ? s.corners[2] : s.corners[3];
-    return s.corners[0] * w[0] + b * w[1] + c * w[2];
-}
-
 // A number for i that keeps blocks of powers of two together (Burley 2020): two sequences, one of
 // them in this order, are independent and stratified each.
 std::uint32_t shuffled(std::uint32_t i, std::uint64_t seed) {
@@ -72,7 +55,8 @@ LostLight losses_of(const Radiosity& radiosity, const std::vector<Sender>& sende
                 const Sender& sender = senders[std::min(s, senders.size() - 1)];
                 covered |= (sender.covered ? 1u : 0u) << k;
                 const Vec3 origin =
-                    point_on(sender, low_discrepancy(hash_bits(seed, 2), shuffled(i, seed))) +
+                    uniform_polygon({sender.corners.data(), sender.count},
+                                    low_discrepancy(hash_bits(seed, 2), shuffled(i, seed))) +
                     sender.normal * radiosity.caster.clearance() - radiosity.caster.middle();
                 const Vec3 d =
                     Frame(sender.normal).to_world(cosine_hemisphere(low_discrepancy(seed + 1, i)));

@@ -1,7 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/solve/options.h"
 
+#include "exitance/run/error.h"
+#include "exitance/solve/element_methods.h"
+
 namespace exitance {
+
+namespace {
+
+std::vector<std::string> solver_names() {
+    std::vector<std::string> names{std::string(adaptive_shooting)};
+    for (const ElementMethod& method : element_methods()) names.emplace_back(method.name);
+    return names;
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+    throw Error(Fault::wrong_use, what);
+}
+
+}  // namespace
 
 Options describe(SolveOptions& o) {
     return {
@@ -10,13 +27,29 @@ Options describe(SolveOptions& o) {
          "follow",
          "", 1e-4, 1},
         {"time", &o.time, "stop after this long and keep the best solution so far", "s", 0},
-        {"solver",
-         &o.solver,
-         "how the system is solved: shooting = progressive refinement",
+        {"solver", &o.solver,
+         "how the system is solved: shooting = progressive refinement that divides elements where "
+         "light needs it; the others are for one exitance per element of an even mesh",
+         "", 0, 0, solver_names()},
+        {"transport",
+         &o.transport,
+         "how the solvers of elements hold their form factors: in a matrix, one without its zeros, "
+         "or not at all; default: dense, above 10000 elements sparse",
          "",
          0,
          0,
-         {"shooting"}},
+         {transports.begin(), transports.end()}},
+        {"vertices",
+         &o.vertices,
+         "how vertices get light from solved elements: one gathering step, or the mean of the "
+         "elements around; default: gather",
+         "",
+         0,
+         0,
+         {"gather", "average"}},
+        {"element-rays", &o.element_rays,
+         "rays over the hemisphere of an element that tell its form factors; default: from --error",
+         "", 16, 1 << 20},
         {"groups",
          &o.groups,
          "light groups that can be dimmed later: one for all, per lamp, per material, or as the "
@@ -55,6 +88,44 @@ Options describe(SolveOptions& o) {
          "", 0, 1024},
         {"seed", &o.seed, "seed of the random numbers; same seed, same bytes"},
     };
+}
+
+bool by_elements(const SolveOptions& options) {
+    return options.solver != adaptive_shooting;
+}
+
+void require_possible(const SolveOptions& o) {
+    if (!by_elements(o)) {
+        if (o.transport && *o.transport != "on-the-fly")
+            refuse("--transport " + *o.transport +
+                   " cannot be had with --solver shooting: it divides elements while it shoots, "
+                   "which a stored matrix knows nothing of; expected on-the-fly, or --solver "
+                   "southwell, which is shooting with a matrix");
+        if (o.vertices)
+            refuse(
+                "--vertices cannot be had with --solver shooting, which solves for the vertices "
+                "themselves; expected a solver of elements, as --solver jacobi");
+        if (o.element_rays)
+            refuse(
+                "--element-rays cannot be had with --solver shooting, which casts rays from "
+                "vertices to patches; expected a solver of elements, as --solver jacobi");
+        return;
+    }
+    const std::string with = " cannot be had with --solver " + o.solver;
+    if (o.min_area)
+        refuse("--min-area" + with +
+               ": elements are the patches and stay whole; expected --patch-size");
+    if (o.next_shot && o.solver != "southwell")
+        refuse("--next-shot" + with +
+               ", which does not choose what to shoot next; expected --unshot");
+    if (!o.occlusion)
+        refuse("--no-occlusion" + with +
+               ": rays tell what an element sees, and they end where they hit; expected --solver "
+               "shooting");
+    if (o.form_factor != "lambert")
+        refuse("--form-factor " + o.form_factor + with +
+               ": the factor of a vertex and a patch has no part in a matrix of elements; expected "
+               "--solver shooting");
 }
 
 }  // namespace exitance

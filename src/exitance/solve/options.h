@@ -14,6 +14,9 @@ struct SolveOptions {
     double error = 0.02;
     std::optional<double> time;
     std::string solver = "shooting";
+    std::optional<std::string> transport;
+    std::optional<std::string> vertices;
+    std::optional<double> element_rays;
     std::string groups = "file";
     std::optional<double> unshot;
     std::optional<double> next_shot;
@@ -31,5 +34,11 @@ struct SolveOptions {
 /// Every member of `options` with its name, unit, range and reason; values are read and written
 /// through the result.
 Options describe(SolveOptions& options);
+
+/// Whether the solver is one of those for one exitance per element (element_methods.h).
+bool by_elements(const SolveOptions& options);
+
+/// Throws Error(wrong_use) for options that cannot be had together, and says why.
+void require_possible(const SolveOptions& options);
 
 }  // namespace exitance

@@ -6,10 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "exitance/math/polygon.h"
 #include "exitance/run/parallel.h"
-#include "exitance/solve/distant_cast.h"
-#include "exitance/solve/luminaire_light.h"
+#include "exitance/solve/cast_emission.h"
 
 namespace exitance {
 
@@ -27,19 +25,8 @@ constexpr float sum_rounding = 4 * std::numeric_limits<float>::epsilon();
 }  // namespace
 
 Shooting::Shooting(Radiosity& radiosity, const ShootingOptions& options)
-    : radiosity_(radiosity), options_(options) {
+    : radiosity_(radiosity), options_(options), emitters_(emitters_of(radiosity)) {
     const Mesh& mesh = radiosity_.mesh;
-    std::vector<double> flux(mesh.faces().size(), 0.0);
-    for (std::size_t f = 0; f < mesh.faces().size(); ++f) {
-        const Face& face = mesh.faces()[f];
-        if (!radiosity_.emits(face)) continue;
-        const auto corners = mesh.corners(face);
-        flux[f] = area({corners.data(), face.count}) *
-                  static_cast<double>(radiosity_.columns.luminance(radiosity_.emitted(face)));
-        emitters_.push_back(FaceId(f));
-    }
-    std::stable_sort(emitters_.begin(), emitters_.end(),
-                     [&](FaceId a, FaceId b) { return flux[a.index()] > flux[b.index()]; });
     const std::size_t stride = radiosity_.columns.stride;
     patch_shot_.assign(mesh.patches().size() * stride, 0.0f);
     patch_unshot_.assign(mesh.patches().size() * stride, 0.0f);
@@ -104,21 +91,13 @@ Shooting::Brightest Shooting::brightest() const {
 std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& received) {
     std::vector<std::uint32_t> which(receivers.size());
     std::iota(which.begin(), which.end(), 0u);
-    const auto cast = [&](const LightSource& source) {
-        return cast_light(radiosity_.caster, source, receivers, which, tolerance(), options_.column,
-                          radiosity_.columns.stride, received);
-    };
-    std::uint64_t rays = 0;
-    for (const FaceId face : emitters_) rays += cast(emission_of(radiosity_, face));
-    rays += cast_luminaires(radiosity_, receivers, which, tolerance(), options_.column, received);
-    rays += cast_suns(radiosity_, receivers, which, tolerance(), options_.column, received);
-    received.note_seen();
-    // The sky has no sharp shadows, and indoors it would hide what lamps and sun show of theirs.
-    rays += cast_skies(radiosity_, receivers, which, tolerance(), options_.column, received);
+    std::uint64_t rays = cast_emission(radiosity_, emitters_, receivers, which, tolerance(),
+                                       options_.column, received);
     const Columns& columns = radiosity_.columns;
     for (std::size_t p = 0; p < radiosity_.mesh.patches().size(); ++p)
         if (columns.magnitude({&patch_shot_[p * columns.stride], columns.stride}) > 0)
-            rays += cast(shot_of(radiosity_, PatchId(p)));
+            rays += cast_light(radiosity_.caster, shot_of(radiosity_, PatchId(p)), receivers, which,
+                               tolerance(), options_.column, columns.stride, received);
     return rays;
 }
 

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/solve/element_solve.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "exitance/run/error.h"
+#include "exitance/run/parallel.h"
+#include "exitance/solve/cast_emission.h"
+#include "exitance/solve/element_methods.h"
+#include "exitance/solve/element_vertices.h"
+#include "exitance/transport/dense.h"
+#include "exitance/transport/exchange_by_casting.h"
+#include "exitance/transport/on_the_fly.h"
+#include "exitance/transport/sparse.h"
+
+namespace exitance {
+
+namespace {
+
+// 2 n² bytes: 0.2 GB. A matrix made of a thousand rays per row has gaps by then.
+constexpr std::size_t rows_of_dense = 10000;
+constexpr std::size_t most_dense_bytes = std::size_t{4} << 30;
+
+// Stratified rays over a hemisphere miss by about n^-3/4 / 2 of what is uneven in it (ray_count.h);
+// what elements reflect differs by half of its mean in an ordinary room.
+double casting_error(std::uint32_t rays) {
+    return 0.25 * std::pow(rays, -0.75);
+}
+
+// A tenth of the error asked for, between 256 rays and 65536.
+std::uint32_t rays_for_error(double error) {
+    const double rays = std::pow(0.25 / (0.1 * error), 4.0 / 3.0);
+    return static_cast<std::uint32_t>(std::clamp(rays, 256.0, 65536.0));
+}
+
+class ElementSolve {
+  public:
+    ElementSolve(Radiosity& radiosity, const ElementOptions& options, const Stop& stop,
+                 const Stopwatch& clock, const Observer& observe)
+        : radiosity_(radiosity),
+          options_(options),
+          stop_(stop),
+          clock_(clock),
+          observe_(observe),
+          scene_{radiosity.mesh, radiosity.caster, radiosity.owners, radiosity.two_sided()},
+          rows_(make_element_rows(scene_)),
+          points_(make_row_points(scene_, rows_)),
+          caster_(scene_, rows_,
+                  options.rays ? static_cast<std::uint32_t>(*options.rays)
+                               : rays_for_error(options.solving.error),
+                  options.column.seed),
+          tolerance_(static_cast<float>(std::max(
+              options.solving.error * radiosity.emitted_flux() / radiosity.area(), 1e-30))) {}
+
+    ElementReport run() {
+        report_.rows = rows_.size();
+        report_.transport =
+            options_.transport.value_or(rows_.size() <= rows_of_dense ? std::string(transports[0])
+                                                                      : std::string(transports[1]));
+        refuse_what_would_not_fit();
+        ElementSystem system = make_system();
+        find_direct(system);
+        const std::unique_ptr<Transport> transport = make_transport();
+        const auto solver =
+            element_method(options_.solver).make(system, *transport, options_.solving);
+        exitance::run(*solver, stop_, clock_, [&](Progress progress) { tell(progress); });
+        report_.sweeps = solver->sweeps();
+        report_.shots = transport->counters().shots;
+        report_.rays += transport->counters().rays;
+        report_.bytes = transport->bytes();
+        light_vertices(*solver);
+        report_.residual = measured_residual(system, *transport, *solver);
+        return report_;
+    }
+
+  private:
+    bool interrupted() const {
+        return (stop_.cancel && stop_.cancel->requested()) ||
+               (stop_.seconds && clock_.seconds() > *stop_.seconds);
+    }
+
+    void tell(Progress progress) const {
+        if (!observe_) return;
+        progress.seconds = clock_.seconds();
+        progress.rays += report_.rays;
+        progress.vertices = radiosity_.receivers.size();
+        observe_(progress);
+    }
+
+    void refuse_what_would_not_fit() const {
+        const std::size_t bytes = DenseTransport::bytes_for(rows_.size());
+        if (report_.transport == "dense" && bytes > most_dense_bytes)
+            throw Error(Fault::wrong_use,
+                        fmt::format("--transport dense: a matrix of {} elements takes {:.1f} GiB, "
+                                    "expected at most 4; --transport sparse or on-the-fly need "
+                                    "less, larger patches too (--patch-size)",
+                                    rows_.size(), double(bytes) / double(1 << 30)));
+    }
+
+    ElementSystem make_system() const {
+        const std::size_t n = rows_.size(), columns = radiosity_.columns.count;
+        ElementSystem out{radiosity_.columns,   rows_.area,           RowField(n, columns),
+                          RowField(n, columns), RowField(n, columns), radiosity_.emitted_flux()};
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto rho = radiosity_.rho(rows_.elements[i]);
+            const auto E = radiosity_.emitted(scene_.face(rows_.elements[i]));
+            std::copy(rho.begin(), rho.end(), out.rho[RowId(i)].begin());
+            std::copy(E.begin(), E.end(), out.emitted[RowId(i)].begin());
+        }
+        return out;
+    }
+
+    // D: lamps by their exact factors and shadow rays at the Gauss points of the elements.
+    void find_direct(ElementSystem& system) {
+        std::vector<std::uint32_t> everyone(points_.receivers.size());
+        std::iota(everyone.begin(), everyone.end(), 0u);
+        Received received;
+        received.reset(everyone.size(), system.columns.stride);
+        report_.rays += cast_emission(radiosity_, emitters_of(radiosity_), points_.receivers,
+                                      everyone, tolerance_, options_.column, received);
+        for (std::size_t i = 0; i < rows_.size(); ++i)
+            for (std::uint32_t k = points_.begin[i]; k < points_.begin[i + 1]; ++k)
+                for (std::size_t c = 0; c < system.columns.stride; ++c)
+                    system.direct[RowId(i)][c] +=
+                        points_.weight[k] * received.row(k, system.columns.stride)[c];
+        Progress progress;
+        progress.phase = "direct";
+        tell(progress);
+    }
+
+    std::unique_ptr<Transport> make_transport() {
+        const double accuracy = casting_error(caster_.rays());
+        if (report_.transport == "on-the-fly")
+            return std::make_unique<OnTheFlyTransport>(
+                scene_, rows_, points_, caster_,
+                OnTheFlyOptions{options_.column, tolerance_, radiosity_.columns.weight}, accuracy);
+        ExchangeAreas areas =
+            cast_exchange_areas(caster_, rows_, [&, before = report_.rays](std::uint64_t rays) {
+                report_.rays = before + rays;
+                Progress progress;
+                progress.phase = "factors";
+                tell(progress);
+                return !interrupted();
+            });
+        if (report_.transport == "sparse")
+            return std::make_unique<SparseTransport>(std::move(areas), rows_.area, accuracy);
+        return std::make_unique<DenseTransport>(std::move(areas), rows_.area, accuracy);
+    }
+
+    void light_vertices(const ElementSolver& solver) {
+        radiosity_.emission_shot = true;
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            const auto R = solver.reflected()[RowId(i)];
+            std::copy(R.begin(), R.end(), radiosity_.shot[rows_.elements[i]].begin());
+        }
+        if (options_.gather_vertices)
+            report_.rays += gather_at_vertices(radiosity_, caster_, solver.reflected(), tolerance_,
+                                               options_.column);
+        else
+            average_at_vertices(radiosity_, rows_, solver.irradiance());
+    }
+
+    double measured_residual(const ElementSystem& system, Transport& transport,
+                             const ElementSolver& solver) const {
+        RowField H(system.rows(), system.columns.count);
+        transport.gather(solver.reflected(), H);
+        double square = 0, start = 0;
+        for (std::size_t i = 0; i < system.rows(); ++i)
+            for (std::size_t c = 0; c < system.columns.count; ++c) {
+                const auto rho = double(system.rho[RowId(i)][c]);
+                const auto D = double(system.direct[RowId(i)][c]);
+                const double r =
+                    rho * (D + double(H[RowId(i)][c])) - double(solver.reflected()[RowId(i)][c]);
+                const auto weight = double(system.area[i] * system.columns.weight[c]);
+                square += weight * r * r, start += weight * rho * rho * D * D;
+            }
+        return start > 0 ? std::sqrt(square / start) : 0.0;
+    }
+
+    Radiosity& radiosity_;
+    const ElementOptions& options_;
+    const Stop& stop_;
+    const Stopwatch& clock_;
+    const Observer& observe_;
+    ElementScene scene_;
+    ElementRows rows_;
+    RowPoints points_;
+    ElementCaster caster_;
+    float tolerance_;
+    ElementReport report_;
+};
+
+}  // namespace
+
+ElementReport solve_elements(Radiosity& radiosity, const ElementOptions& options, const Stop& stop,
+                             const Stopwatch& clock, const Observer& observe) {
+    return ElementSolve(radiosity, options, stop, clock, observe).run();
+}
+
+}  // namespace exitance
