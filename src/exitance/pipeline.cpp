@@ -11,6 +11,7 @@
 #include "exitance/solution/balance.h"
 #include "exitance/solution/error_estimate.h"
 #include "exitance/solution/extract.h"
+#include "exitance/solve/divide.h"
 #include "exitance/solve/element_solve.h"
 #include "exitance/solve/merge.h"
 #include "exitance/solve/shooting.h"
@@ -42,6 +43,12 @@ MeshOptions mesh_options(const SolveOptions& options, double extent) {
     // Shorter contacts are left to the elements: light gets round what stands on them.
     out.shortest_contact = 0.25 * out.patch_size;
     return out;
+}
+
+// Elements of one exitance each are wrong in proportion to their size.
+std::optional<double> element_size(const SolveOptions& options, double extent) {
+    if (options.element_size || !by_elements(options)) return options.element_size;
+    return std::max(1e-9, 0.025 * extent * std::sqrt(options.error / 0.02));
 }
 
 double min_area(const SolveOptions& options, double error, double extent) {
@@ -95,17 +102,14 @@ Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
     };
 }
 
-// Options that mean nothing to adaptive shooting, which refuses them.
-bool of_elements(const std::string& name) {
-    return name == "transport" || name == "vertices" || name == "element-rays";
-}
-
 std::map<std::string, std::string> used(SolveOptions options) {
     std::map<std::string, std::string> out;
-    for (const Option& option : describe(options))
-        if (option.name != "threads" &&  // the bytes do not depend on it
-            (by_elements(options) || !of_elements(option.name)))
-            out[option.name] = option.value_text();
+    for (const Option& option : describe(options)) {
+        if (option.name == "threads") continue;  // the bytes do not depend on it
+        const std::string value = option.value_text();
+        if (value.empty() && !by_elements(options) && of_elements(option.name)) continue;
+        out[option.name] = value;
+    }
     return out;
 }
 
@@ -206,6 +210,7 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     const double size = extent(scene);
     Radiosity radiosity(scene, make_groups(scene, grouping_of(options.groups)),
                         mesh_options(options, size));
+    if (const auto longest = element_size(options, size)) divide_evenly(radiosity, *longest);
     const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
                     clock,   observe, snapshots};
     const Done done = by_elements(options) ? solve_by_elements(radiosity, task)

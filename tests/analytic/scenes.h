@@ -4,6 +4,7 @@
 #pragma once
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct Case {
     /// What is asked of the solver, and what its energy balance must close to then. Both are
     /// looser where sources are partly hidden, because visibility is sampled.
     double error = 0.01, imbalance = 1e-3;
+    /// Of elements that are not divided at shadows [m]; by default what follows from the error.
+    std::optional<double> even_element_size{};
     std::string why;  ///< where the answer comes from and what the tolerance leaves room for
 };
 

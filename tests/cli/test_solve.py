@@ -43,6 +43,33 @@ class Solve(ProgramTest):
         self.assertEqual(done.stdout + done.stderr, "")
         self.assertTrue(glb_json(self.output)["meshes"])
 
+    def test_solvers_of_elements(self):
+        for solver in ("jacobi", "gauss-seidel", "southwell", "krylov", "stochastic"):
+            self.solve("--error", "0.1", "--solver", solver, "--vertices", "average")
+            used = extras(self.output)["options"]
+            self.assertEqual((used["solver"], used["vertices"]), (solver, "average"))
+            self.assertGreater(extras(self.output)["counters"]["rows"], 10)
+
+    def test_refuses_what_cannot_be_had_together(self):
+        output = ("-o", self.output)
+        for message, *arguments in (
+                (r"--transport dense cannot .* shooting: .* divides .* southwell",
+                 "--transport", "dense"),
+                (r"--vertices cannot .* shooting, .* expected .* jacobi", "--vertices", "gather"),
+                (r"--element-rays cannot .* shooting", "--element-rays", "64"),
+                (r"--min-area cannot .* krylov: .* expected --element-size",
+                 "--solver", "krylov", "--min-area", "0.01"),
+                (r"--next-shot cannot .* jacobi.* expected --unshot",
+                 "--solver", "jacobi", "--next-shot", "0.01"),
+                (r"--no-occlusion cannot .* jacobi: rays", "--solver", "jacobi", "--no-occlusion"),
+                (r"--form-factor disk cannot .* jacobi", "--solver", "jacobi", "--form-factor",
+                 "disk"),
+                (r"--transport dense: a matrix of \d+ elements takes [\d.]+ GiB, expected at most 4",
+                 "--solver", "jacobi", "--transport", "dense", "--element-size", "0.008"),
+                (r"--solver: 'jakobi' is not allowed, expected one of shooting, jacobi",
+                 "--solver", "jakobi")):
+            self.refuse(WRONG_USE, message, "solve", self.scene, *output, *arguments)
+
     def test_json_log(self):
         done = self.solve(*QUICK, "--log", "json")
         steps = [json.loads(line) for line in done.stderr.splitlines()]

@@ -97,7 +97,7 @@ class ElementSolve {
             throw Error(Fault::wrong_use,
                         fmt::format("--transport dense: a matrix of {} elements takes {:.1f} GiB, "
                                     "expected at most 4; --transport sparse or on-the-fly need "
-                                    "less, larger patches too (--patch-size)",
+                                    "less, larger elements too (--element-size)",
                                     rows_.size(), double(bytes) / double(1 << 30)));
     }
 

@@ -12,8 +12,6 @@ namespace {
 
 // Of the error asked for, how much the light that is never shot may take, as in shooting.cpp.
 constexpr double unshot_share = 0.15;
-// Where so many sweeps bring nothing the rounding of the fields is reached.
-constexpr double sweeps_without_gain = 32;
 // Rows whose values a log shows.
 constexpr std::size_t shown_rows = 16;
 
@@ -46,7 +44,7 @@ ElementSolver::ElementSolver(const ElementSystem& system, Transport& transport,
 }
 
 bool ElementSolver::step() {
-    if (sweeps_ - sweep_of_least_ > sweeps_without_gain) return false;
+    if (sweeps_ - sweep_of_least_ > patience()) return false;
     sweeps_ += sweep();
     find_residual();
     if (unshot() < least_unshot_) least_unshot_ = unshot(), sweep_of_least_ = sweeps_;

@@ -43,6 +43,9 @@ class ElementSolver : public Solver {
     /// Improves R and leaves H = F R; returns how many times as much work as one product with F.
     virtual double sweep() = 0;
 
+    /// Where so many sweeps bring nothing, the rounding of the fields is reached.
+    virtual double patience() const { return 32; }
+
     /// ρ (D + H) − R of row `i` into `out` [stride].
     void residual_of(std::size_t i, std::span<float> out) const;
     /// Flux below which what is unshot does not matter for the error asked for, over Φ.

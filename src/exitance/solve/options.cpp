@@ -68,6 +68,10 @@ Options describe(SolveOptions& o) {
         {"patch-size", &o.patch_size,
          "longest edge of a shooting patch where the file does not divide; default: from --error",
          "m", 1e-6},
+        {"element-size", &o.element_size,
+         "patches are divided evenly into elements with edges no longer than this; default: from "
+         "--error, not at all for shooting, which divides where it matters",
+         "m", 1e-6},
         {"min-area", &o.min_area,
          "elements are not subdivided below this area; default: from --error", "m²", 0},
         {"adaptive", &o.adaptive,
@@ -94,6 +98,11 @@ bool by_elements(const SolveOptions& options) {
     return options.solver != adaptive_shooting;
 }
 
+bool of_elements(const std::string& option) {
+    return option == "transport" || option == "vertices" || option == "element-rays" ||
+           option == "element-size";
+}
+
 void require_possible(const SolveOptions& o) {
     if (!by_elements(o)) {
         if (o.transport && *o.transport != "on-the-fly")
@@ -113,8 +122,7 @@ void require_possible(const SolveOptions& o) {
     }
     const std::string with = " cannot be had with --solver " + o.solver;
     if (o.min_area)
-        refuse("--min-area" + with +
-               ": elements are the patches and stay whole; expected --patch-size");
+        refuse("--min-area" + with + ": its elements stay as they are; expected --element-size");
     if (o.next_shot && o.solver != "southwell")
         refuse("--next-shot" + with +
                ", which does not choose what to shoot next; expected --unshot");

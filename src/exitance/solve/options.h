@@ -21,6 +21,7 @@ struct SolveOptions {
     std::optional<double> unshot;
     std::optional<double> next_shot;
     std::optional<double> patch_size;
+    std::optional<double> element_size;
     std::optional<double> min_area;
     bool adaptive = true;
     bool merge = true;
@@ -37,6 +38,9 @@ Options describe(SolveOptions& options);
 
 /// Whether the solver is one of those for one exitance per element (element_methods.h).
 bool by_elements(const SolveOptions& options);
+
+/// Whether an option is one of theirs; adaptive shooting leaves these unset.
+bool of_elements(const std::string& option);
 
 /// Throws Error(wrong_use) for options that cannot be had together, and says why.
 void require_possible(const SolveOptions& options);

@@ -15,7 +15,7 @@ constexpr std::size_t sample_share = 8, least_sample = 64;
 // What a series leaves unfollowed, as a part of what may stay unshot: every series leaves it.
 constexpr double share_left = 0.25;
 // Noise, unlike what is never shot, is no bias: it may take this much of the error asked for.
-constexpr double noise_share = 0.5;
+constexpr double noise_share = 0.25;
 
 void add(RowField& sum, const RowField& term, float factor) {
     for (std::size_t i = 0; i < sum.rows(); ++i)
@@ -41,7 +41,8 @@ double StochasticJacobi::flux_of(const RowField& field) const {
 }
 
 double StochasticJacobi::unshot() const {
-    return complete_ < 2 || exact_ ? left_ : noise_;
+    if (exact_) return left_;
+    return complete_ < 2 ? all_ : noise_;
 }
 
 Progress StochasticJacobi::progress() const {
@@ -51,7 +52,7 @@ Progress StochasticJacobi::progress() const {
 }
 
 double StochasticJacobi::enough() const {
-    if (complete_ < 2 || exact_) return negligible();
+    if (exact_) return negligible();
     return std::max(negligible(), noise_share * options_.error * reflected_flux_);
 }
 
@@ -120,7 +121,6 @@ void StochasticJacobi::finish_series() {
                      std::sqrt(squares_[i] / double(complete_) / double(complete_ - 1));
     }
     noise_ = system_.emitted_flux > 0 ? noise / system_.emitted_flux : 0.0;
-    if (!exact_) left_ = all_;  // a second series begins
     reflected_flux_ = flux_of(mean_);
     reflected_ = mean_, irradiance_ = mean_arrived_;
     for (RowField* field : {&series_, &arrived_})

@@ -17,8 +17,8 @@ class StochasticJacobi final : public ElementSolver {
     StochasticJacobi(const ElementSystem& system, Transport& transport,
                      const ElementSolverOptions& options);
 
-    /// Flux that the mean may be wrong by, by the series' differences; before there are two, flux
-    /// that the series under way has not followed yet.
+    /// Flux that the mean may be wrong by, by the series' differences; before there are two, all
+    /// that is reflected. Of an exact series, what it has not followed yet.
     double unshot() const override;
     double enough() const override;
     double next_shot() const override { return unshot(); }
@@ -26,6 +26,8 @@ class StochasticJacobi final : public ElementSolver {
 
   private:
     double sweep() override;
+    /// A mean of n series gets better with their root: slowly, but always.
+    double patience() const override { return 1e6; }
     /// ΔR ← ρ F̂ ΔR; false if every row was in the sample.
     bool reflect_sampled();
     void finish_series();
