@@ -49,7 +49,7 @@ Case point_over_a_square() {
         c.probes.push_back({{x, y, 0}, {0, 0, 1}, Spectrum(3, hidden ? 0.0 : 500 * 4 / (r2 * r2))});
     }
     c.imbalance = 3e-3;
-    c.even_element_size = 0.08;  // shorter than the way from the edge to the nearest probe
+    c.even_element_size = 0.11;  // about the way from the edge to the nearest probe
     c.why =
         "a point's shadow has a sharp edge, 0.1 m from the nearest probe; 1 % for interpolation";
     return c;

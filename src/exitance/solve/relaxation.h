@@ -36,11 +36,24 @@ class GaussSeidel final : public Relaxation {
 /// it sends along what it will reflect of the ambient light (Feda & Purgathofer 1992).
 class Southwell final : public Relaxation {
   public:
-    using Relaxation::Relaxation;
+    Southwell(const ElementSystem& system, Transport& transport,
+              const ElementSolverOptions& options);
 
   private:
     double sweep() override;
-    std::vector<float> ambient() const;
+    struct Brightest {
+        std::size_t row = 0;
+        float moved = 0;             ///< flux, Columns::magnitude
+        std::vector<double> unshot;  ///< flux of all rows, per column, signed
+        Brightest& operator+=(const Brightest& other);
+    };
+    /// The row whose shot moves most, with `spread` of irradiance sent along.
+    Brightest brightest(std::span<const float> spread) const;
+    /// Irradiance that all that is unshot would add on average: U / (A (1 − ρ)), per column.
+    std::vector<float> ambient(std::span<const double> unshot) const;
+
+    std::vector<double> absorbing_;  ///< Σ A (1 − ρ) per column
+    std::vector<float> spread_;      ///< by what was unshot one shot ago
 };
 
 }  // namespace exitance

@@ -14,8 +14,9 @@ namespace {
 constexpr std::size_t sample_share = 8, least_sample = 64;
 // What a series leaves unfollowed, as a part of what may stay unshot: every series leaves it.
 constexpr double share_left = 0.25;
-// Noise, unlike what is never shot, is no bias: it may take this much of the error asked for.
-constexpr double noise_share = 0.25;
+// How much of the error asked for noise may take, on average: some places are four times worse,
+// and colours of little luminance more than white.
+constexpr double noise_share = 0.15;
 
 void add(RowField& sum, const RowField& term, float factor) {
     for (std::size_t i = 0; i < sum.rows(); ++i)
