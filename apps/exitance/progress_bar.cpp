@@ -34,9 +34,10 @@ void Reporting::add_to(CLI::App& command) {
     command
         .add_option("--log", log,
                     "progress on stderr: a bar if that is a terminal, or one JSON object per line "
-                    "and step")
-        ->type_name("bar|json")
-        ->check(CLI::IsMember({"bar", "json"}).description(""))
+                    "and step; csv: a table on stdout, one line per sweep, with the exitance of "
+                    "each element if they are few")
+        ->type_name("bar|json|csv")
+        ->check(CLI::IsMember({"bar", "json", "csv"}).description(""))
         ->default_str(log)
         ->excludes(silent);
 }
@@ -84,8 +85,41 @@ std::string bar_line(const Progress& progress, std::size_t columns) {
     return head + bar + tail.substr(0, columns - used);
 }
 
+std::string csv_header(const Progress& progress) {
+    std::string line = "sweep,residual,unshot,seconds";
+    for (std::size_t i = 0; i < progress.exitance.size(); ++i) line += fmt::format(",B{}", i + 1);
+    return line;
+}
+
+std::string csv_line(const Progress& progress) {
+    std::string line =
+        fmt::format("{:.6g},{},{:.6g},{:.4f}", progress.sweeps.value_or(0),
+                    progress.residual ? fmt::format("{:.6g}", *progress.residual) : "",
+                    progress.fraction_left, progress.seconds);
+    for (const double B : progress.exitance) line += fmt::format(",{:.6g}", B);
+    return line;
+}
+
+namespace {
+
+// One line when another sweep is full, and one at the end.
+Observer csv_observer() {
+    return [next = 1.0, first = true](const Progress& progress) mutable {
+        if (!progress.sweeps) return;
+        const bool last = progress.fraction_left <= progress.fraction_target.value_or(0);
+        if (*progress.sweeps < next - 1e-9 && !last) return;
+        next = std::floor(*progress.sweeps + 1e-9) + 1;
+        if (first) std::puts(csv_header(progress).c_str());
+        first = false;
+        std::puts(csv_line(progress).c_str());
+    };
+}
+
+}  // namespace
+
 Observer make_observer(const Reporting& reporting) {
     if (reporting.quiet) return {};
+    if (reporting.log == "csv") return csv_observer();
     if (reporting.log == "json")
         return [](const Progress& progress) {
             std::fprintf(stderr, "%s\n", json_line(progress).c_str());

@@ -28,6 +28,10 @@ double share_done(const Progress& progress);
 /// One JSON object on one line, without the newline.
 std::string json_line(const Progress& progress);
 
+/// sweep, residual (empty where the solver has none), unshot share, seconds, B per element.
+std::string csv_header(const Progress& progress);
+std::string csv_line(const Progress& progress);
+
 /// "shooting  ███───  52 %  unshot 3.1 %  …", at most `columns` characters.
 std::string bar_line(const Progress& progress, std::size_t columns);
 

@@ -33,9 +33,10 @@ class SolveCommand {
                 "what to light: .toml, .glb, .gltf, .mgf, .rad, .geom, .vs3, .obj, .ply, .stl, "
                 ".fbx, .dae, .3ds or .ifc")
             ->required();
-        command.add_option("--output,-o", output_, "the solution: a glTF file")
-            ->type_name("file.glb")
-            ->required();
+        command
+            .add_option("--output,-o", output_,
+                        "the solution: a glTF file; needed unless --log csv asks for numbers alone")
+            ->type_name("file.glb");
         reporting_.add_to(command);
         command.footer(
             "Examples:\n"
@@ -47,7 +48,10 @@ class SolveCommand {
     }
 
     void run() {
-        require_output(output_, scene_, {".glb"});
+        if (output_)
+            require_output(*output_, scene_, {".glb"});
+        else if (reporting_.log != "csv")
+            throw Error(Fault::wrong_use, "--output is required");
         reading_.apply({});
         if (is_solution(scene_))
             throw Error(Fault::wrong_use,
@@ -61,10 +65,12 @@ class SolveCommand {
         const Solution solution =
             light(scene, options_, make_observer(reporting_), &interrupt.cancel());
         clear_bar(reporting_);
-        write_solution(solution, output_);
+        if (output_) write_solution(solution, *output_);
         if (reporting_.quiet) return;
-        if (interrupt.cancel().requested()) std::puts(stopped_early);
-        std::fputs(summary(solution, output_, watch.seconds()).c_str(), stdout);
+        // A table on stdout stays one.
+        std::FILE* said = reporting_.log == "csv" ? stderr : stdout;
+        if (interrupt.cancel().requested()) fmt::print(said, "{}\n", stopped_early);
+        fmt::print(said, "{}", summary(solution, output_.value_or("not written"), watch.seconds()));
     }
 
   private:
@@ -72,7 +78,8 @@ class SolveCommand {
     GivenOptions given_;
     ReadOptions read_options_;
     GivenOptions reading_;
-    std::filesystem::path scene_, output_;
+    std::filesystem::path scene_;
+    std::optional<std::filesystem::path> output_;
     Reporting reporting_;
 };
 

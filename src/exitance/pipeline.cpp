@@ -72,6 +72,7 @@ ElementOptions element_options(const SolveOptions& options) {
     ElementOptions out;
     out.solver = options.solver;
     out.transport = options.transport;
+    out.factors = options.factors;
     if (options.element_rays) out.rays = static_cast<int>(*options.element_rays);
     out.gather_vertices = options.vertices.value_or("gather") == "gather";
     out.solving = {options.error, options.unshot, options.overshoot, options.seed};

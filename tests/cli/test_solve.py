@@ -9,7 +9,7 @@ import struct
 import termios
 import unittest
 
-from program import (BAD_INPUT, COULD_NOT_FINISH, PROGRAM, WRONG_USE, ProgramTest, box, extras,
+from program import (BAD_INPUT, COULD_NOT_FINISH, PROGRAM, ROOT, WRONG_USE, ProgramTest, box, extras,
                      glb_json)
 
 QUICK = ("--error", "0.2")
@@ -50,6 +50,31 @@ class Solve(ProgramTest):
             self.assertEqual((used["solver"], used["vertices"]), (solver, "average"))
             self.assertGreater(extras(self.output)["counters"]["rows"], 10)
 
+    def two_plates(self, *arguments):
+        """Rows of the log: sweep, residual, unshot, seconds, B of ceiling and floor."""
+        scene = ROOT / "scenes/two_plates.toml"
+        done = self.succeed("solve", scene, "--log", "csv", "--unshot", "1e-7", *arguments)
+        head, *lines = done.stdout.splitlines()
+        self.assertEqual(head, "sweep,residual,unshot,seconds,B1,B2")
+        return [[float(field or "nan") for field in line.split(",")] for line in lines]
+
+    def test_two_plates_step_by_step(self):
+        # B1 = 12 + B2 / 4, B2 = B1 / 6: F = 1/3 to the seven digits of the plates' distance.
+        ceiling, floor = 12, 0
+        for row in self.two_plates("--solver", "jacobi"):
+            ceiling, floor = 12 + floor / 4, ceiling / 6
+            self.assertAlmostEqual(row[4], ceiling, delta=1e-4)
+            self.assertAlmostEqual(row[5], floor, delta=1e-4)
+        self.assertGreater(row[0], 8)
+        for solver in ("jacobi", "gauss-seidel", "southwell", "krylov", "stochastic"):
+            for transport in ("dense", "sparse"):
+                last = self.two_plates("--solver", solver, "--transport", transport)[-1]
+                self.assertAlmostEqual(last[4], 12 / (1 - 1 / 24), delta=1e-4, msg=solver)
+                self.assertAlmostEqual(last[5], 2 / (1 - 1 / 24), delta=1e-4, msg=solver)
+
+    def test_output_is_needed_without_a_table(self):
+        self.refuse(WRONG_USE, "--output is required", "solve", self.scene)
+
     def test_refuses_what_cannot_be_had_together(self):
         output = ("-o", self.output)
         for message, *arguments in (
@@ -57,6 +82,9 @@ class Solve(ProgramTest):
                  "--transport", "dense"),
                 (r"--vertices cannot .* shooting, .* expected .* jacobi", "--vertices", "gather"),
                 (r"--element-rays cannot .* shooting", "--element-rays", "64"),
+                (r"--factors cannot .* shooting", "--factors", "pairs"),
+                (r"--factors pairs cannot .* --transport on-the-fly; expected hemisphere",
+                 "--solver", "jacobi", "--transport", "on-the-fly", "--factors", "pairs"),
                 (r"--min-area cannot .* krylov: .* expected --element-size",
                  "--solver", "krylov", "--min-area", "0.01"),
                 (r"--next-shot cannot .* jacobi.* expected --unshot",

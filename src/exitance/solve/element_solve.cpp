@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "exitance/formfactor/pairwise.h"
 #include "exitance/run/error.h"
 #include "exitance/run/parallel.h"
 #include "exitance/solve/cast_emission.h"
@@ -24,6 +25,9 @@ namespace {
 // 2 n² bytes: 0.2 GB. A matrix made of a thousand rays per row has gaps by then.
 constexpr std::size_t rows_of_dense = 10000;
 constexpr std::size_t most_dense_bytes = std::size_t{4} << 30;
+
+// So few pairs are known to a millionth in no time.
+constexpr std::size_t rows_of_pairs = 256;
 
 // Stratified rays over a hemisphere miss by about n^-3/4 / 2 of what is uneven in it (ray_count.h);
 // what elements reflect differs by half of its mean in an ordinary room.
@@ -63,8 +67,8 @@ class ElementSolve {
                                                                       : std::string(transports[1]));
         refuse_what_would_not_fit();
         ElementSystem system = make_system();
-        find_direct(system);
         const std::unique_ptr<Transport> transport = make_transport();
+        find_direct(system, *transport);
         const auto solver =
             element_method(options_.solver).make(system, *transport, options_.solving);
         exitance::run(*solver, stop_, clock_, [&](Progress progress) { tell(progress); });
@@ -114,38 +118,95 @@ class ElementSolve {
         return out;
     }
 
-    // D: lamps by their exact factors and shadow rays at the Gauss points of the elements.
-    void find_direct(ElementSystem& system) {
+    // D: lamps by their exact factors and shadow rays at the Gauss points of the elements. A matrix
+    // whose every pair is accurate knows better what elements send; luminaires are not in it.
+    void find_direct(ElementSystem& system, Transport& transport) {
+        const bool by_matrix = pairs_ && !interrupted();
+        const std::size_t stride = system.columns.stride;
         std::vector<std::uint32_t> everyone(points_.receivers.size());
         std::iota(everyone.begin(), everyone.end(), 0u);
         Received received;
-        received.reset(everyone.size(), system.columns.stride);
-        report_.rays += cast_emission(radiosity_, emitters_of(radiosity_), points_.receivers,
-                                      everyone, tolerance_, options_.column, received);
+        received.reset(everyone.size(), stride);
+        const std::vector<FaceId> emitters =
+            by_matrix ? std::vector<FaceId>{} : emitters_of(radiosity_);
+        report_.rays += cast_emission(radiosity_, emitters, points_.receivers, everyone, tolerance_,
+                                      options_.column, received);
         for (std::size_t i = 0; i < rows_.size(); ++i)
             for (std::uint32_t k = points_.begin[i]; k < points_.begin[i + 1]; ++k)
-                for (std::size_t c = 0; c < system.columns.stride; ++c)
-                    system.direct[RowId(i)][c] +=
-                        points_.weight[k] * received.row(k, system.columns.stride)[c];
+                for (std::size_t c = 0; c < stride; ++c)
+                    system.direct[RowId(i)][c] += points_.weight[k] * received.row(k, stride)[c];
+        for (std::size_t i = 0; by_matrix && i < rows_.size(); ++i)
+            if (radiosity_.emits(scene_.face(rows_.elements[i])))
+                transport.shoot(RowId(i), system.emitted[RowId(i)], system.direct);
         Progress progress;
         progress.phase = "direct";
         tell(progress);
     }
 
+    // Pairs know neither glass nor polygons that share a place.
+    void choose_factors() {
+        const bool wanted = options_.factors && *options_.factors == "pairs";
+        bool shared = false;
+        for (const ElementId id : rows_.elements)
+            shared = shared ||
+                     !scene_.owners.covers(scene_.face(id).polygon, scene_.face(id).back).empty();
+        const bool possible =
+            !radiosity_.caster.has_glass() && !shared && report_.transport != "on-the-fly";
+        if (wanted && !possible)
+            throw Error(Fault::wrong_use,
+                        std::string("--factors pairs cannot be had with ") +
+                            (shared                          ? "polygons that lie in one place"
+                             : radiosity_.caster.has_glass() ? "glass"
+                                                             : "--transport on-the-fly") +
+                            "; expected hemisphere");
+        pairs_ = wanted || (!options_.factors && possible && rows_.size() <= rows_of_pairs);
+    }
+
+    double pair_accuracy() const {
+        return std::clamp(rows_.size() <= rows_of_pairs ? 1e-6 : 0.02 * options_.solving.error,
+                          1e-6, 0.1);
+    }
+
+    ExchangeAreas pairwise() {
+        Enclosure enclosure;
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            const Element& element = scene_.mesh[rows_.elements[i]];
+            Facet facet;
+            facet.outline = scene_.mesh.corners(element);
+            facet.count = element.count;
+            facet.normal = scene_.face(rows_.elements[i]).normal;
+            facet.area = double(element.area);
+            facet.row = static_cast<std::uint32_t>(i);
+            enclosure.facets.push_back(facet);
+            enclosure.surfaces.push_back({"", facet.area, 1.0});
+        }
+        try {
+            return pairwise_exchange_areas(enclosure, {pair_accuracy(), options_.column.seed}, {},
+                                           stop_.cancel);
+        } catch (const Error&) {
+            if (!interrupted()) throw;
+            return ExchangeAreas(rows_.size());
+        }
+    }
+
+    ExchangeAreas cast() {
+        return cast_exchange_areas(caster_, rows_, [&, before = report_.rays](std::uint64_t rays) {
+            report_.rays = before + rays;
+            Progress progress;
+            progress.phase = "factors";
+            tell(progress);
+            return !interrupted();
+        });
+    }
+
     std::unique_ptr<Transport> make_transport() {
-        const double accuracy = casting_error(caster_.rays());
+        choose_factors();
+        const double accuracy = pairs_ ? pair_accuracy() : casting_error(caster_.rays());
         if (report_.transport == "on-the-fly")
             return std::make_unique<OnTheFlyTransport>(
                 scene_, rows_, points_, caster_,
                 OnTheFlyOptions{options_.column, tolerance_, radiosity_.columns.weight}, accuracy);
-        ExchangeAreas areas =
-            cast_exchange_areas(caster_, rows_, [&, before = report_.rays](std::uint64_t rays) {
-                report_.rays = before + rays;
-                Progress progress;
-                progress.phase = "factors";
-                tell(progress);
-                return !interrupted();
-            });
+        ExchangeAreas areas = pairs_ ? pairwise() : cast();
         if (report_.transport == "sparse")
             return std::make_unique<SparseTransport>(std::move(areas), rows_.area, accuracy);
         return std::make_unique<DenseTransport>(std::move(areas), rows_.area, accuracy);
@@ -191,6 +252,7 @@ class ElementSolve {
     RowPoints points_;
     ElementCaster caster_;
     float tolerance_;
+    bool pairs_ = false;  ///< form factors pair by pair, not by rays over hemispheres
     ElementReport report_;
 };
 

@@ -16,6 +16,7 @@ namespace exitance {
 struct ElementOptions {
     std::string solver;                    ///< element_methods.h
     std::optional<std::string> transport;  ///< by default dense, sparse above 10 000 elements
+    std::optional<std::string> factors;    ///< hemisphere or pairs; by default pairs of few rows
     std::optional<int> rays;               ///< per element; by default from the error
     bool gather_vertices = true;           ///< or else the mean of the elements around
     ElementSolverOptions solving;

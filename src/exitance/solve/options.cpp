@@ -39,6 +39,14 @@ Options describe(SolveOptions& o) {
          0,
          0,
          {transports.begin(), transports.end()}},
+        {"factors",
+         &o.factors,
+         "where the matrix of elements comes from: rays over each element's hemisphere, or the "
+         "exact factors of all pairs; default: hemisphere, for up to 256 elements pairs",
+         "",
+         0,
+         0,
+         {"hemisphere", "pairs"}},
         {"vertices",
          &o.vertices,
          "how vertices get light from solved elements: one gathering step, or the mean of the "
@@ -99,8 +107,8 @@ bool by_elements(const SolveOptions& options) {
 }
 
 bool of_elements(const std::string& option) {
-    return option == "transport" || option == "vertices" || option == "element-rays" ||
-           option == "element-size";
+    return option == "transport" || option == "factors" || option == "vertices" ||
+           option == "element-rays" || option == "element-size";
 }
 
 void require_possible(const SolveOptions& o) {
@@ -110,6 +118,10 @@ void require_possible(const SolveOptions& o) {
                    " cannot be had with --solver shooting: it divides elements while it shoots, "
                    "which a stored matrix knows nothing of; expected on-the-fly, or --solver "
                    "southwell, which is shooting with a matrix");
+        if (o.factors)
+            refuse(
+                "--factors cannot be had with --solver shooting, whose factors are those of "
+                "--form-factor; expected a solver of elements, as --solver jacobi");
         if (o.vertices)
             refuse(
                 "--vertices cannot be had with --solver shooting, which solves for the vertices "

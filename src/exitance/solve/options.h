@@ -15,6 +15,7 @@ struct SolveOptions {
     std::optional<double> time;
     std::string solver = "shooting";
     std::optional<std::string> transport;
+    std::optional<std::string> factors;
     std::optional<std::string> vertices;
     std::optional<double> element_rays;
     std::string groups = "file";

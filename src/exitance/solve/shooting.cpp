@@ -362,6 +362,7 @@ Progress Shooting::progress() const {
     out.shots = shots_;
     out.rays = rays_;
     out.vertices = radiosity_.receivers.size();
+    out.sweeps = double(shots_) / double(radiosity_.mesh.patches().size());
     return out;
 }
 
