@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "commands.h"
+#include "compare_solvers.h"
 #include "exitance/pipeline.h"
 #include "exitance/run/atomic_file.h"
 #include "exitance/scene/read.h"
@@ -34,9 +35,13 @@ class SolveCommand {
                 ".fbx, .dae, .3ds or .ifc")
             ->required();
         command
-            .add_option("--output,-o", output_,
-                        "the solution: a glTF file; needed unless --log csv asks for numbers alone")
+            .add_option(
+                "--output,-o", output_,
+                "the solution: a glTF file; needed unless --log csv or --compare ask for numbers")
             ->type_name("file.glb");
+        command.add_flag("--compare", compare_,
+                         "solve by every solver and transport in turn and print a table instead: "
+                         "work, time, residual, difference from the converged solution, memory");
         reporting_.add_to(command);
         command.footer(
             "Examples:\n"
@@ -48,9 +53,11 @@ class SolveCommand {
     }
 
     void run() {
+        if (output_ && compare_)
+            throw Error(Fault::wrong_use, "--compare prints a table and writes no --output");
         if (output_)
             require_output(*output_, scene_, {".glb"});
-        else if (reporting_.log != "csv")
+        else if (reporting_.log != "csv" && !compare_)
             throw Error(Fault::wrong_use, "--output is required");
         reading_.apply({});
         if (is_solution(scene_))
@@ -61,6 +68,10 @@ class SolveCommand {
         given_.apply(scene.settings);
 
         const Interrupt interrupt;
+        if (compare_) {
+            fmt::print("{}", compare_solvers(scene, options_, interrupt.cancel()));
+            return;
+        }
         const Stopwatch watch;
         const Solution solution =
             light(scene, options_, make_observer(reporting_), &interrupt.cancel());
@@ -80,6 +91,7 @@ class SolveCommand {
     GivenOptions reading_;
     std::filesystem::path scene_;
     std::optional<std::filesystem::path> output_;
+    bool compare_ = false;
     Reporting reporting_;
 };
 

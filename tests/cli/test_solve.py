@@ -72,6 +72,18 @@ class Solve(ProgramTest):
                 self.assertAlmostEqual(last[4], 12 / (1 - 1 / 24), delta=1e-4, msg=solver)
                 self.assertAlmostEqual(last[5], 2 / (1 - 1 / 24), delta=1e-4, msg=solver)
 
+    def test_compare(self):
+        done = self.succeed("solve", self.scene, "--compare", "--error", "0.2", "--transport",
+                            "sparse")
+        head, *lines = done.stdout.splitlines()
+        self.assertRegex(head, "solver +transport +sweeps +rays +CPU s +residual +RMS diff % +MB")
+        self.assertEqual([line.split()[:2] for line in lines],
+                         [[name, "sparse"] for name in
+                          ("jacobi", "gauss-seidel", "southwell", "krylov", "stochastic")])
+        for line in lines:  # 20 % is asked for; all five solve the same matrix
+            self.assertLess(float(line.split()[-2]), 5, line)
+        self.refuse(WRONG_USE, "--compare prints", "solve", self.scene, "--compare", "-o", "x.glb")
+
     def test_output_is_needed_without_a_table(self):
         self.refuse(WRONG_USE, "--output is required", "solve", self.scene)
 
