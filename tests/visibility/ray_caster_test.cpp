@@ -225,5 +225,26 @@ TEST(RayCaster, VisitNearFindsWhatIsNear) {
     EXPECT_TRUE(visited >= 1 && visited < 50) << visited;
 }
 
+TEST(RayCaster, APaneWeakensLightOnceOnItsEdgesToo) {
+    // Four quads and two triangles meet in (0, 0, 1) and along both axes; a second pane behind.
+    Shape shape;
+    shape.quad({{{-1, -1, 1}, {0, -1, 1}, {0, 0, 1}, {-1, 0, 1}}});
+    shape.quad({{{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}});
+    shape.quad({{{-1, 0, 1}, {0, 0, 1}, {0, 1, 1}, {-1, 1, 1}}});
+    shape.triangle({{{0, -1, 1}, {1, -1, 1}, {0, 0, 1}}});
+    shape.triangle({{{1, -1, 1}, {1, 0, 1}, {0, 0, 1}}});
+    shape.quad({{{-1, -1, 1.01}, {1, -1, 1.01}, {1, 1, 1.01}, {-1, 1, 1.01}}});
+    const RayCaster caster(shape.points, shape.faces, {}, {.5f, .5f, .5f, .5f, .5f, .8f});
+    RayPacket rays;
+    rays.near.fill(0), rays.far.fill(1);
+    for (std::size_t k = 0; k < RayPacket::width; ++k) {
+        const double x = 0.25 * double(k % 4) - 0.25, y = 0.25 * double(k / 4) - 0.25;
+        rays.aim(k, Vec3{x, y, 0} - caster.middle(), {0, 0, 2});
+    }
+    std::array<float, RayPacket::width> through;
+    EXPECT_EQ(caster.occluded(rays, through), 0U);
+    for (std::size_t k = 0; k < RayPacket::width; ++k) EXPECT_FLOAT_EQ(through[k], 0.4f) << k;
+}
+
 }  // namespace
 }  // namespace exitance

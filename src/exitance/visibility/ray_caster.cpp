@@ -4,6 +4,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -67,16 +68,31 @@ void reject_open_backs(const RTCFilterFunctionNArguments* query) {
     }
 }
 
-// Rays that ask what glass lets through carry it along.
+// Rays that ask what glass lets through carry it along, by their ids, and where they last went
+// through some: on an edge between two faces of one pane both report the ray.
 struct GlassContext : RTCIntersectContext {
-    float* through = nullptr;  ///< by the id of the ray
+    static constexpr std::size_t remembered = 8;
+
+    float* through = nullptr;
+    float clearance = 0;  ///< panes closer to each other than this are one [m]
+    std::array<std::array<float, remembered>, RayPacket::width> crossed;
+    std::array<unsigned, RayPacket::width> count{};
+
+    /// Whether no pane has been met at `distance` [lengths of the direction] before.
+    bool is_first(unsigned ray, float distance, float direction_length) {
+        const unsigned known = std::min<unsigned>(count[ray], remembered);
+        for (unsigned k = 0; k < known; ++k)
+            if (std::abs(crossed[ray][k] - distance) * direction_length <= clearance) return false;
+        crossed[ray][count[ray]++ % remembered] = distance;
+        return true;
+    }
 };
 
 // Shadow rays go through glass. The back of a face that is open there is the other side of one
 // that counts.
 void pass_through_glass(const RTCFilterFunctionNArguments* query) {
     const auto& faces = *static_cast<const FilteredFaces*>(query->geometryUserPtr);
-    float* through = static_cast<const GlassContext*>(query->context)->through;
+    auto& context = *static_cast<GlassContext*>(query->context);
     const unsigned n = query->N;
     for (unsigned i = 0; i < n; ++i) {
         if (query->valid[i] != -1) continue;
@@ -84,12 +100,17 @@ void pass_through_glass(const RTCFilterFunctionNArguments* query) {
         const float transmittance = faces.transmittance[primitive];
         if (!(transmittance > 0)) continue;
         query->valid[i] = 0;
-        if (!through) continue;
+        if (!context.through) continue;
         const float facing = RTCHitN_Ng_x(query->hit, n, i) * RTCRayN_dir_x(query->ray, n, i) +
                              RTCHitN_Ng_y(query->hit, n, i) * RTCRayN_dir_y(query->ray, n, i) +
                              RTCHitN_Ng_z(query->hit, n, i) * RTCRayN_dir_z(query->ray, n, i);
         if (facing >= 0 && !faces.open_backs.empty() && faces.open_backs[primitive]) continue;
-        through[RTCRayN_id(query->ray, n, i)] *= transmittance;
+        const unsigned ray = RTCRayN_id(query->ray, n, i);
+        const float length =
+            std::hypot(RTCRayN_dir_x(query->ray, n, i), RTCRayN_dir_y(query->ray, n, i),
+                       RTCRayN_dir_z(query->ray, n, i));
+        if (context.is_first(ray, RTCRayN_tfar(query->ray, n, i), length))
+            context.through[ray] *= transmittance;
     }
 }
 
@@ -177,7 +198,7 @@ float RayCaster::transmittance(std::uint32_t primitive) const {
 
 namespace {
 
-std::uint32_t occluded_by(RTCScene scene, const RayPacket& rays, float* through) {
+std::uint32_t occluded_by(RTCScene scene, const RayPacket& rays, float* through, float clearance) {
     RTCRay16 ray;
     fill(ray, rays);
     for (unsigned i = 0; i < RayPacket::width; ++i) ray.id[i] = i;
@@ -185,6 +206,7 @@ std::uint32_t occluded_by(RTCScene scene, const RayPacket& rays, float* through)
     GlassContext context;
     rtcInitIntersectContext(&context);
     context.through = through;
+    context.clearance = clearance;
     rtcOccluded16(mask.lanes.data(), scene, &context, &ray);
     std::uint32_t blocked = 0;
     for (std::size_t i = 0; i < RayPacket::width; ++i)
@@ -195,13 +217,14 @@ std::uint32_t occluded_by(RTCScene scene, const RayPacket& rays, float* through)
 }  // namespace
 
 std::uint32_t RayCaster::occluded(const RayPacket& rays) const {
-    return occluded_by(embree_->scene, rays, nullptr);
+    return occluded_by(embree_->scene, rays, nullptr, 0);
 }
 
 std::uint32_t RayCaster::occluded(const RayPacket& rays,
                                   std::array<float, RayPacket::width>& through) const {
     through.fill(1.0f);
-    return occluded_by(embree_->scene, rays, embree_->has_glass ? through.data() : nullptr);
+    return occluded_by(embree_->scene, rays, embree_->has_glass ? through.data() : nullptr,
+                       static_cast<float>(clearance_));
 }
 
 bool RayCaster::occluded(const Vec3& from, const Vec3& to) const {
