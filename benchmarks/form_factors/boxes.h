@@ -13,4 +13,8 @@ Enclosure room_with_cube(std::size_t n, std::size_t m, double side);
 /// And k³ cubes of side 0.4 / k, each shifted at random by up to a quarter of its place.
 Enclosure cluttered_room(std::size_t n, std::size_t k, std::size_t m);
 
+/// rooms × rooms unit rooms on one floor with doors between neighbours, n × n facets a wall, in
+/// each k³ cubes as above.
+Enclosure building(std::size_t rooms, std::size_t n, std::size_t k, std::size_t m);
+
 }  // namespace exitance

@@ -38,8 +38,10 @@ Enclosure scene(int argc, char** argv) {
     if (name == "empty" && argc > 2) return empty_room(number(2));
     if (name == "cube" && argc > 4) return room_with_cube(number(2), number(3), std::stod(argv[4]));
     if (name == "clutter" && argc > 4) return cluttered_room(number(2), number(3), number(4));
+    if (name == "building" && argc > 5) return building(number(2), number(3), number(4), number(5));
     throw std::invalid_argument(
-        "empty N | cube N M SIDE | clutter N K M, then --accuracy A --finer A --threads T");
+        "empty N | cube N M SIDE | clutter N K M | building ROOMS N K M, then --accuracy A --finer "
+        "A --threads T");
 }
 
 double option(int argc, char** argv, const char* name, double otherwise) {

@@ -21,7 +21,11 @@ struct Ends {
     Vec3 from, to;
 };
 
-ObstructedTarget::Alike alike(const Ends& a, const Ends& b) {
+/// `left`, `right`: planes through `b`.
+ObstructedTarget::Alike alike(const Ends& a, const Ends& b, const Plane& left, const Plane& right) {
+    for (const Vec3& p : {a.from, a.to})
+        if (std::abs(left.height(p)) > one_line || std::abs(right.height(p)) > one_line)
+            return ObstructedTarget::Alike::no;
     const Vec3 along = normalized(b.to - b.from);
     for (const Vec3& p : {a.from, a.to})
         if (length(cross(p - b.from, along)) > one_line) return ObstructedTarget::Alike::no;
@@ -83,7 +87,8 @@ void ObstructedTarget::set(const SmallPolygon& target, const Plane& target_plane
                                            static_cast<float>(e.right.height(corner[c]))});
                 rim_over_side.push_back({static_cast<float>(outward[c].height(e.ends.from)),
                                          static_cast<float>(outward[c].height(e.ends.to))});
-                side_on_rim.push_back(alike({corner[c], corner[(c + 1) % n]}, e.ends));
+                side_on_rim.push_back(
+                    alike({corner[c], corner[(c + 1) % n]}, e.ends, e.left, e.right));
             }
         }
     }
@@ -102,7 +107,7 @@ void ObstructedTarget::set(const SmallPolygon& target, const Plane& target_plane
                                static_cast<float>(over.right.height(p))};
             };
             rim_over_rim[r * count + q] = {heights(of.ends.from), heights(of.ends.to)};
-            rim_on_rim[r * count + q] = alike(of.ends, over.ends);
+            rim_on_rim[r * count + q] = alike(of.ends, over.ends, over.left, over.right);
         }
 }
 

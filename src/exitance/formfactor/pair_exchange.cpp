@@ -8,16 +8,18 @@
 
 namespace exitance {
 
-PairExchanger::PairExchanger(double accuracy, double slack, double total_area)
-    : accuracy_(accuracy),
-      slack_(slack),
-      total_area_(total_area),
-      far_(4 * std::pow(1e-4 / accuracy, 1.0 / 6)) {}
+PairExchanger::PairExchanger(double accuracy, double slack)
+    : accuracy_(accuracy), slack_(slack), far_(4 * std::pow(1e-4 / accuracy, 1.0 / 6)) {}
 
-double PairExchanger::free(const SampledFacet& a, const SampledFacet& b, bool wholly,
-                           double by_points, double distance) {
-    if (wholly && distance > far_) return by_points;
-    return exchange_area(a.outline(), b.outline(), 0.1 * accuracy_);
+double PairExchanger::free(const Pair& pair) {
+    if (pair.wholly && pair.distance > far_) return pair.by_points;
+    // Float, and Gauss points of one facet only, are good for a few millionths.
+    if (pair.wholly && pair.distance > 1.2 && accuracy_ > 2e-5) {
+        const bool from_a = pair.a->radius <= pair.b->radius;
+        const SampledFacet &from = from_a ? *pair.a : *pair.b, &to = from_a ? *pair.b : *pair.a;
+        return partial_.free(from.outline(), from.plane, to.outline(), to.plane);
+    }
+    return exchange_area(pair.a->outline(), pair.b->outline(), 0.1 * accuracy_);
 }
 
 namespace {
@@ -29,9 +31,9 @@ double distance(const Vec3& p, const Box& box) {
 
 }  // namespace
 
-double PairExchanger::seen(const SampledFacet& a, const SampledFacet& b, bool wholly,
-                           double by_points, double apart,
-                           std::span<const Blocker* const> blockers) {
+double PairExchanger::seen(const Pair& pair, std::span<const Blocker* const> blockers,
+                           double tolerance) {
+    const SampledFacet &a = *pair.a, &b = *pair.b;
     // From the side that the blockers are farther from, shadows move less.
     double near_a = 1e300, near_b = 1e300;
     for (const Blocker* blocker : blockers) {
@@ -63,21 +65,23 @@ double PairExchanger::seen(const SampledFacet& a, const SampledFacet& b, bool wh
             ++counters.hidden;
             return 0;
         }
-        if (stand == Stand::between) obstacles_.push_back({blocker, rims_[k]});
+        // Edges that can be seen from the other side may tell what these cannot.
+        if (stand == Stand::apart || find_rims(*blocker, target.corners(), points.corners(), slack_,
+                                               back_rims_) == Stand::apart)
+            continue;
+        obstacles_.push_back({blocker, rims_[k]});
     }
     if (obstacles_.empty()) {
         ++counters.visible;
-        return free(a, b, wholly, by_points, apart);
+        return free(pair);
     }
     ++counters.partial;
-    const double least = std::min(a.area, b.area);
-    const PartialTolerance tolerance{0.1 * accuracy_ * a.area * b.area / total_area_,
-                                     0.4 * accuracy_ * std::sqrt(least)};
     const PartialExchange part =
         partial_(points, from.plane, target, to.plane, obstacles_, tolerance);
     counters.viewpoints = partial_.viewpoints;
-    if (!part.by_hidden || (wholly && apart > 1.5)) return part.seen;
-    return std::max(0.0, free(a, b, wholly, by_points, apart) - part.hidden);
+    // Nothing is seen better through something.
+    const double most = free(pair);
+    return part.by_hidden ? std::max(0.0, most - part.hidden) : std::min(part.seen, most);
 }
 
 }  // namespace exitance

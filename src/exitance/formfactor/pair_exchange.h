@@ -12,26 +12,32 @@
 
 namespace exitance {
 
+/// Two facets of which one hides perhaps a part of the other's view.
+struct Pair {
+    const SampledFacet *a = nullptr, *b = nullptr;
+    bool wholly = true;    ///< neither cuts the other's plane
+    double by_points = 0;  ///< exchange area as in FarExchange
+    double distance = 0;   ///< as there
+};
+
 /// Keeps its working memory from pair to pair; one for each thread.
 class PairExchanger {
   public:
-    PairExchanger(double accuracy, double slack, double total_area);
+    PairExchanger(double accuracy, double slack);
 
-    /// What both see of each other with nothing between; `by_points` and `distance` as in
-    /// FarExchange, `wholly`: neither cuts the other's plane.
-    double free(const SampledFacet& a, const SampledFacet& b, bool wholly, double by_points,
-                double distance);
-    /// With `blockers` perhaps between.
-    double seen(const SampledFacet& a, const SampledFacet& b, bool wholly, double by_points,
-                double distance, std::span<const Blocker* const> blockers);
+    /// What both see of each other with nothing between.
+    double free(const Pair& pair);
+    /// With `blockers` perhaps between; to `tolerance`.
+    double seen(const Pair& pair, std::span<const Blocker* const> blockers, double tolerance);
 
     PairwiseCounters counters;
 
   private:
-    double accuracy_, slack_, total_area_, far_;
+    double accuracy_, slack_, far_;
     PartialExchanger partial_;
     std::vector<Blocker> cut_;
     std::vector<std::vector<std::uint32_t>> rims_;
+    std::vector<std::uint32_t> back_rims_;
     std::vector<Obstacle> obstacles_;
 };
 

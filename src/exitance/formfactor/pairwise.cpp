@@ -93,7 +93,8 @@ class GroupWork {
           tree_(tree),
           group_(group),
           extent_(problem.facets, group.facets, slack),
-          pair_(accuracy, slack, problem.total_area) {
+          accuracy_(accuracy),
+          pair_(accuracy, slack) {
         for (const std::uint32_t row : group.rows) {
             sums_.emplace_back(row + 1, 0.0);
             last_row_ = std::max(last_row_, row);
@@ -110,6 +111,7 @@ class GroupWork {
         std::vector<std::uint32_t> all(problem_.blockers.size());
         std::iota(all.begin(), all.end(), 0u);
         descend(0, all);
+        settle();
     }
 
     std::vector<std::vector<double>>& sums() { return sums_; }
@@ -124,8 +126,12 @@ class GroupWork {
         std::vector<std::uint32_t> between;
         if (!blockers.empty()) {
             const Shaft shaft(extent_.box, node.extent.box);
-            for (const std::uint32_t b : blockers)
-                if (!shaft.misses(problem_.blockers[b].bounds)) between.push_back(b);
+            for (const std::uint32_t b : blockers) {
+                const Blocker& blocker = problem_.blockers[b];
+                if (shaft.misses(blocker.bounds)) continue;
+                if (hides(blocker, extent_.box, node.extent.box)) return;
+                between.push_back(b);
+            }
         }
         if (node.right == 0) return meet(node, between);
         descend(at + 1, between);
@@ -171,31 +177,63 @@ class GroupWork {
                     if (between) candidates_.push_back({&blocker, between});
                 }
             }
-            std::vector<double>& sum = sums_[slot_[f]];
             for (LaneMask m = open; m; m &= m - 1) {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(m));
                 const std::uint32_t j = block.facet[lane];
-                const bool wholly = far.wholly >> lane & 1;
-                const double by_points = static_cast<double>(far.area[lane]);
-                const double distance = static_cast<double>(far.distance[lane]);
-                near_.clear();
+                const Pair pair{&facet, &problem_.facets[j], (far.wholly >> lane & 1) != 0,
+                                static_cast<double>(far.area[lane]),
+                                static_cast<double>(far.distance[lane])};
+                const std::size_t begin = later_blockers_.size();
                 for (const Candidate& c : candidates_)
-                    if (c.lanes >> lane & 1) near_.push_back(c.blocker);
-                double area = 0;
-                if (near_.empty()) {
-                    ++pair_.counters.separated;
-                    area = pair_.free(facet, problem_.facets[j], wholly, by_points, distance);
-                } else {
-                    area =
-                        pair_.seen(facet, problem_.facets[j], wholly, by_points, distance, near_);
-                }
-                // In a row of several facets each pair stands for both its directions.
+                    if (c.lanes >> lane & 1) later_blockers_.push_back(c.blocker);
                 const std::uint32_t row = problem_.rows[j];
-                sum[row] += row == problem_.rows[i] ? 2 * area : area;
+                if (later_blockers_.size() > begin) {
+                    later_.push_back({pair, f, row, begin, later_blockers_.size()});
+                    continue;
+                }
+                ++pair_.counters.separated;
+                add(f, row, pair_.free(pair));
             }
         }
     }
 
+    // In a row of several facets each pair stands for both its directions.
+    void add(std::size_t facet, std::uint32_t row, double area) {
+        const std::size_t slot = slot_[facet];
+        sums_[slot][row] += row == group_.rows[slot] ? 2 * area : area;
+    }
+
+    // Pairs with something between. Work goes with 1 / error, so that a given sum of errors costs
+    // least when each goes with the root of what it is an error of; the sum over a facet's pairs is
+    // to be some accuracies of its area. What is above the diagonal is taken to be as what is
+    // below.
+    void settle() {
+        std::vector<double> roots(group_.facets.size());
+        const auto weight = [](const Later& pair) {
+            const double least = std::min(pair.pair.a->area, pair.pair.b->area);
+            // Some that cut each other's planes have no Gauss point before them.
+            return std::sqrt(std::max(pair.pair.by_points, 1e-6 * least) * least);
+        };
+        for (const Later& pair : later_) roots[pair.facet] += weight(pair);
+        for (const Later& pair : later_) {
+            const double share = weight(pair) / roots[pair.facet];
+            const double tolerance =
+                accuracy_ * std::min(0.5 * weight(pair), 4 * pair.pair.a->area * share);
+            add(pair.facet, pair.row,
+                pair_.seen(pair.pair,
+                           std::span(later_blockers_)
+                               .subspan(pair.begin_blocker, pair.end_blocker - pair.begin_blocker),
+                           tolerance));
+        }
+    }
+
+    /// A pair with something between.
+    struct Later {
+        Pair pair;
+        std::size_t facet;  ///< of the group
+        std::uint32_t row;
+        std::size_t begin_blocker, end_blocker;
+    };
     struct Candidate {
         const Blocker* blocker;
         LaneMask lanes;
@@ -204,6 +242,7 @@ class GroupWork {
     const FacetTree& tree_;
     const Group& group_;
     FacetExtent extent_;
+    double accuracy_;
     PairExchanger pair_;
     std::uint32_t last_row_ = 0;
     std::vector<std::vector<double>> sums_;  // of each row of the group
@@ -212,7 +251,8 @@ class GroupWork {
     std::vector<BlockHeights> heights_;
     std::vector<char> measured_;
     std::vector<Candidate> candidates_;
-    std::vector<const Blocker*> near_;
+    std::vector<Later> later_;
+    std::vector<const Blocker*> later_blockers_;
 };
 
 void add(PairwiseCounters& to, const PairwiseCounters& more) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "exitance/math/polygon.h"
+#include "exitance/math/quadrature.h"
 
 namespace exitance {
 
@@ -18,7 +19,24 @@ constexpr std::array<double, 4> nodes{0.5 * inner, 0.5 * (1 - inner), 0.5 + 0.5 
 // What a rule twice as fine is off by, as a share of the difference to the coarse one: between 1/4
 // (a jump along a line) and 1/16 (smooth).
 constexpr double finer = 0.25;
-constexpr std::size_t most_cells = 4096;
+constexpr std::size_t most_cells = 4096, most_agreeing = 256;
+
+}  // namespace
+
+namespace {
+
+// Vanishes where the integrand is linear; a kink across the cell shows in one of the three sums
+// whichever way it runs.
+double unevenness(const std::array<double, 16>& at) {
+    double columns = 0, rows = 0, chequer = 0;
+    for (std::size_t k = 0; k < 16; ++k) {
+        const std::size_t i = k % 4, j = k / 4;
+        columns += i == 0 || i == 3 ? at[k] : -at[k];
+        rows += j == 0 || j == 3 ? at[k] : -at[k];
+        chequer += (i + j) % 2 ? at[k] : -at[k];
+    }
+    return 0.25 * (std::abs(columns) + std::abs(rows) + std::abs(chequer));
+}
 
 }  // namespace
 
@@ -42,9 +60,12 @@ void PartialExchanger::look(Cell& cell) {
     viewpoints += 16;
     cell.found = {};
     cell.quadrant = {};
+    std::array<double, 16> seen_at, hidden_at;
     for (std::size_t k = 0; k < 16; ++k) {
         const double seen = weight[k] * static_cast<double>(factors.seen[k]);
         const double hidden = weight[k] * static_cast<double>(factors.free[k] - factors.seen[k]);
+        seen_at[k] = seen;
+        hidden_at[k] = hidden;
         Parts& quadrant = cell.quadrant[k % 4 / 2 + k / 8 * 2];
         quadrant.seen += seen;
         quadrant.hidden += hidden;
@@ -52,6 +73,7 @@ void PartialExchanger::look(Cell& cell) {
         cell.found.hidden += hidden;
     }
     cell.forced = is_large(cell);
+    cell.unevenness = {unevenness(seen_at), unevenness(hidden_at)};
 }
 
 // Shadows vary over what is as far away as they are wide: a cell that is larger than its distance
@@ -83,6 +105,41 @@ PartialExchanger::Parts PartialExchanger::errors() const {
             finer * (std::sqrt(squares.hidden) + std::abs(sum.hidden))};
 }
 
+PartialExchanger::Root::Root(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d,
+                             const Vec3& normal)
+    : corners{a, b, c, d} {
+    const Vec3 ab = b - a, ad = d - a, dc = c - d, bc = c - b;
+    const double at00 = dot(cross(ab, ad), normal);
+    jacobian = {at00, dot(cross(ab, bc), normal) - at00, dot(cross(dc, ad), normal) - at00};
+}
+
+double PartialExchanger::free(std::span<const Vec3> from, const Plane& from_plane,
+                              std::span<const Vec3> to, const Plane& to_plane) {
+    const Root root(from[0], from[1], from[2], from[from.size() - 1], from_plane.normal);
+    const Vec3 origin = centroid(to);
+    target_.set(SmallPolygon(to), to_plane, from_plane.normal, {}, origin,
+                1 / length(from[0] - origin));
+    const auto& rule = gauss_legendre<4>();
+    Viewpoints points;
+    std::array<double, 16> weight;
+    for (std::size_t k = 0; k < 16; ++k) {
+        const double s = rule.at[k % 4], t = rule.at[k / 4];
+        const Vec3 low = root.corners[0] + (root.corners[1] - root.corners[0]) * s;
+        const Vec3 high = root.corners[3] + (root.corners[2] - root.corners[3]) * s;
+        const Vec3f p = target_.local(low + (high - low) * t);
+        points.x[k] = p.x;
+        points.y[k] = p.y;
+        points.z[k] = p.z;
+        weight[k] = (root.jacobian[0] + root.jacobian[1] * s + root.jacobian[2] * t) *
+                    rule.weight[k % 4] * rule.weight[k / 4];
+    }
+    ViewFactors factors;
+    view(target_, points, factors);
+    double sum = 0;
+    for (std::size_t k = 0; k < 16; ++k) sum += weight[k] * static_cast<double>(factors.free[k]);
+    return sum;
+}
+
 void PartialExchanger::split(std::size_t which) {
     const Cell parent = cells_[which];
     for (std::size_t q = 0; q < 4; ++q) {
@@ -104,7 +161,7 @@ void PartialExchanger::split(std::size_t which) {
 PartialExchange PartialExchanger::operator()(const SmallPolygon& from, const Plane& from_plane,
                                              const SmallPolygon& to, const Plane& to_plane,
                                              std::span<const Obstacle> obstacles,
-                                             const PartialTolerance& wanted) {
+                                             double tolerance) {
     const Vec3 origin = centroid(to.corners());
     double reach = 0;
     for (const Vec3& p : from.corners()) reach = std::max(reach, length(p - origin));
@@ -119,30 +176,48 @@ PartialExchange PartialExchanger::operator()(const SmallPolygon& from, const Pla
     for (std::size_t k = 1; k + 1 < from.count; k += 2) {  // a fan of quadrilaterals
         const Vec3 &a = from.at[0], &b = from.at[k], &c = from.at[k + 1],
                    &d = from.at[std::min(k + 2, from.count - 1)];
-        const Vec3 ab = b - a, ad = d - a, dc = c - d, bc = c - b;
-        Root root{{a, b, c, d}, {}};
-        const double at00 = dot(cross(ab, ad), from_plane.normal);
-        root.jacobian = {at00, dot(cross(ab, bc), from_plane.normal) - at00,
-                         dot(cross(dc, ad), from_plane.normal) - at00};
         Cell whole;
         whole.root = static_cast<std::uint32_t>(roots_.size());
-        roots_.push_back(root);
+        roots_.emplace_back(a, b, c, d, from_plane.normal);
         look(whole);
         cells_.push_back(whole);
     }
     double free = 0;
     for (const Cell& cell : cells_) free += cell.found.seen + cell.found.hidden;
-    const double tolerance = wanted.least + wanted.by_root * std::sqrt(free);
     PartialExchange result;
     // A sixth of what would be seen freely may slip between sixteen points.
     const double slips = 6 * tolerance;
-    if (free > slips) {
+    Parts uneven;
+    bool forced = false;
+    for (const Cell& cell : cells_) {
+        uneven.seen += cell.unevenness.seen;
+        uneven.hidden += cell.unevenness.hidden;
+        forced = forced || cell.forced;
+    }
+    result.by_hidden = uneven.hidden < uneven.seen;
+    // Where all points agree, of a corner as much as this may have slipped between them.
+    const auto unnoticed = [&] {
+        Parts sum;
+        for (const Cell& cell : cells_) {
+            sum.seen += cell.found.seen;
+            sum.hidden += cell.found.hidden;
+        }
+        const double share = 0.01 / static_cast<double>(cells_.size());
+        return std::min(sum.seen, sum.hidden) < 1e-5 * free ? share * free : 0;
+    };
+    if (free > slips &&
+        (forced || std::min(uneven.seen, uneven.hidden) > tolerance || unnoticed() > tolerance)) {
         const std::size_t whole = cells_.size();
         for (std::size_t k = 0; k < whole; ++k) split(k);
         for (std::size_t k = 0; k < cells_.size() && cells_.size() < most_cells; ++k)
             while (cells_[k].forced && cells_[k].found.seen + cells_[k].found.hidden > slips &&
                    cells_.size() < most_cells)
                 split(k);
+        while (unnoticed() > tolerance && cells_.size() < most_agreeing)
+            split(static_cast<std::size_t>(
+                std::max_element(cells_.begin(), cells_.end(),
+                                 [](const Cell& a, const Cell& b) { return a.size < b.size; }) -
+                cells_.begin()));
         for (;;) {
             const Parts error = errors();
             result.by_hidden = error.hidden < error.seen;

@@ -11,12 +11,6 @@
 
 namespace exitance {
 
-/// Of the exchange area seen: least + by_root · √(exchange area free). Work grows with 1 / error,
-/// so a given sum of errors costs least if they go with the root of what they are errors of.
-struct PartialTolerance {
-    double least = 0, by_root = 0;
-};
-
 struct PartialExchange {
     double seen = 0, hidden = 0;  ///< by the same points; their sum is what is free
     bool by_hidden = false;       ///< `hidden` is the more accurate of the two
@@ -26,10 +20,15 @@ struct PartialExchange {
 class PartialExchanger {
   public:
     /// Points lie on `from`, which is wholly before the plane of `to`, and the other way round;
-    /// obstacles are before the plane of `to`.
+    /// obstacles are before the plane of `to`. `tolerance`: of the exchange area.
     PartialExchange operator()(const SmallPolygon& from, const Plane& from_plane,
                                const SmallPolygon& to, const Plane& to_plane,
-                               std::span<const Obstacle> obstacles, const PartialTolerance& wanted);
+                               std::span<const Obstacle> obstacles, double tolerance);
+
+    /// With nothing between, by sixteen points and in float: for polygons that are farther apart
+    /// than they are wide, to a few millionths.
+    double free(std::span<const Vec3> from, const Plane& from_plane, std::span<const Vec3> to,
+                const Plane& to_plane);
 
     std::uint64_t viewpoints = 0;  ///< looked from so far
 
@@ -38,6 +37,8 @@ class PartialExchanger {
     struct Root {
         std::array<Vec3, 4> corners;
         std::array<double, 3> jacobian;  ///< 1, s, t
+
+        Root(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& normal);
     };
     /// What is seen and what is hidden, or differences of both.
     struct Parts {
@@ -49,6 +50,7 @@ class PartialExchanger {
         bool forced = false;  ///< large against its distance from what it looks past
         Parts found;
         Parts change;                   ///< from the parent's coarser rule
+        Parts unevenness;               ///< of the sums over rows, columns and the chequer
         std::array<Parts, 4> quadrant;  ///< by that rule
     };
     void look(Cell& cell);

@@ -126,4 +126,41 @@ std::optional<Blocker> cut(const Blocker& blocker, const Plane& plane, double sl
     return blocker.solid ? cut_solid(blocker, plane, height) : cut_sheet(blocker, height);
 }
 
+namespace {
+
+Vec3 corner(const Box& box, unsigned which) {
+    return {which & 1 ? box.upper.x : box.lower.x, which & 2 ? box.upper.y : box.lower.y,
+            which & 4 ? box.upper.z : box.lower.z};
+}
+
+bool stops(const Blocker& blocker, const Vec3& from, const Vec3& to) {
+    if (!blocker.solid) {
+        const double a = blocker.planes[0].height(from), b = blocker.planes[0].height(to);
+        if (!(a * b < 0)) return false;
+        const Vec3 at = from + (to - from) * (a / (a - b));
+        for (std::size_t k = 1; k < blocker.planes.size(); ++k)
+            if (blocker.planes[k].height(at) > 0) return false;
+        return true;
+    }
+    double enter = 0, leave = 1;
+    for (const Plane& plane : blocker.planes) {
+        const double a = plane.height(from), b = plane.height(to);
+        if (a > 0 && b > 0) return false;
+        if (a > 0) enter = std::max(enter, a / (a - b));
+        if (b > 0) leave = std::min(leave, a / (a - b));
+        if (enter >= leave) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+bool hides(const Blocker& blocker, const Box& a, const Box& b) {
+    if (!stops(blocker, a.centre(), b.centre())) return false;
+    for (unsigned i = 0; i < 8; ++i)
+        for (unsigned j = 0; j < 8; ++j)
+            if (!stops(blocker, corner(a, i), corner(b, j))) return false;
+    return true;
+}
+
 }  // namespace exitance

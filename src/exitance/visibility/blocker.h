@@ -39,4 +39,8 @@ std::vector<Blocker> find_blockers(std::span<const std::span<const Vec3>> polygo
 /// The part of the blocker before the plane; none if nothing rises above it by more than `slack`.
 std::optional<Blocker> cut(const Blocker& blocker, const Plane& plane, double slack);
 
+/// Whether every straight line from one box to the other goes through the blocker. Exact: what a
+/// convex body hides from a point is convex, so the corners decide.
+bool hides(const Blocker& blocker, const Box& a, const Box& b);
+
 }  // namespace exitance
