@@ -15,8 +15,8 @@ namespace exitance {
 namespace {
 
 // The faces of a two-sided polygon lie in one place: each lets rays through to the other's front.
-// Where polygons share a plane, the ones that do not own it lie behind by the caster's clearance,
-// so that rays end on the owner.
+// Where polygons share a plane, the ones that do not own it lie behind by half a clearance (rays
+// from the other side start a whole one away), so that rays end on the owner.
 RayCaster make_caster(const ElementScene& scene, const ElementRows& rows) {
     std::vector<Vec3> points;
     std::vector<RayCaster::Face> faces;
@@ -26,7 +26,7 @@ RayCaster make_caster(const ElementScene& scene, const ElementRows& rows) {
         const Element& element = scene.mesh[id];
         const Face& face = scene.face(id);
         const bool below = !scene.owners.covers(face.polygon, face.back).empty();
-        const Vec3 shift = face.normal * (below ? -scene.caster.clearance() : 0.0);
+        const Vec3 shift = face.normal * (below ? -0.5 * scene.caster.clearance() : 0.0);
         const auto first = static_cast<std::uint32_t>(points.size());
         const auto corners = scene.mesh.corners(element);
         for (std::uint32_t c = 0; c < element.count; ++c) points.push_back(corners[c] + shift);
