@@ -8,6 +8,7 @@
 #include "exitance/formfactor/hemicube.h"
 #include "exitance/formfactor/hemisphere.h"
 #include "exitance/formfactor/monte_carlo.h"
+#include "exitance/formfactor/pairwise_method.h"
 #include "exitance/run/error.h"
 
 namespace exitance {
@@ -15,9 +16,10 @@ namespace exitance {
 Options describe(MethodOptions& o) {
     return {
         {"accuracy", &o.accuracy,
-         "error of a form factor to aim at, seen from the smaller of the two surfaces; every "
-         "method's effort follows from it",
-         "", 1e-7, 0.5},
+         "error to aim at: of each form factor, seen from the smaller of its two surfaces; of "
+         "auto, "
+         "of all factors of a row together. Every method's effort follows from it",
+         "", 1e-6, 0.1},
         {"samples", &o.samples,
          "effort instead of --accuracy: contour: segments an edge; disk: cells a polygon; "
          "hemicube: "
@@ -33,6 +35,10 @@ Options describe(MethodOptions& o) {
 
 std::span<const FormFactorMethod> form_factor_methods() {
     static constexpr std::array methods{
+        FormFactorMethod{"auto", "exact integrals, with shafts to find what is between",
+                         pairwise_form_factors},
+        FormFactorMethod{"analytic", "closed form of each pair, with rays to find what is between",
+                         analytic_form_factors},
         FormFactorMethod{"contour", "numeric double contour integral (Goral et al. 1984)",
                          contour_form_factors},
         FormFactorMethod{"disk", "polygons as discs, with a ray to each (Wallace et al. 1989)",

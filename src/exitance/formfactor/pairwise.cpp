@@ -303,12 +303,12 @@ ExchangeAreas pairwise_exchange_areas(const Enclosure& enclosure, const Pairwise
                 for (std::size_t k = 0; k < groups[g].rows.size(); ++k)
                     keep(groups[g].rows[k], work.sums()[k]);
             }
-            const std::size_t now = ++done;
             if (!observer) return;
-            const std::unique_lock lock(reporting, std::try_to_lock);
-            if (!lock) return;
+            const std::lock_guard lock(reporting);
+            const std::size_t now = ++done;
             Progress progress;
-            progress.phase = "form factors";
+            progress.phase = "factors";
+            progress.even = true;
             progress.seconds = watch.seconds();
             progress.fraction_left = 1 - double(now) / double(groups.size());
             progress.fraction_target = 0;
