@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // [site], [sky], [sun], [[scenes]] and environment maps of projects.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -113,6 +114,58 @@ TEST(DaylightKeys, AMapKeepsItsLight) {
     }
 }
 
+// What all cells hold is what all pixels hold, to the roundings of float: of one bright pixel
+// anywhere, of pictures finer and coarser than the cells, turned by any angle.
+TEST(DaylightKeys, APixelOfAMapKeepsItsFlux) {
+    Folder folder;
+    using std::numbers::pi;
+    struct Case {
+        int width, height, x, y;
+        double rotation;
+    };
+    for (const Case& c : {Case{64, 32, 40, 3, 0}, Case{64, 33, 7, 16, 0}, Case{64, 32, 0, 0, 33},
+                          Case{100, 50, 62, 12, 271.3}, Case{512, 256, 300, 60, 0},
+                          Case{1024, 512, 777, 200, 12}, Case{1024, 512, 3, 170, 0}}) {
+        Image picture(c.width, c.height);
+        picture.at(c.x, c.y) = {1e6F, 2e6F, 3e6F};
+        write_image(picture, folder.path() / "sun.exr");
+        const Scene scene = read(
+            folder,
+            fmt::format("[sky]\nmodel = \"map\"\nfile = \"sun.exr\"\nrotation = {}\n", c.rotation));
+        const RadianceMap& map = *scene.distant.at(0).map;
+        const double cell = 2 * pi / (double(map.side()) * map.side());
+        double flux = 0;
+        for (std::size_t i = 0; i < map.cells.size(); i += 3) flux += cell * double(map.cells[i]);
+        const double top = pi * c.y / c.height, bottom = pi * (c.y + 1) / c.height;
+        const double solid = (2 * pi / c.width) * (std::cos(top) - std::cos(bottom));
+        EXPECT_NEAR(flux, 1e6 * solid, 1e6 * solid * 1e-6) << c.width << ' ' << c.x << ' ' << c.y;
+        EXPECT_LE(cell, 1.001 * (2 * pi / c.width) * (pi / c.height)) << c.width;
+        // ∫ cosθ dω of the pixel; where it stands 30° or more high, half a cell is 1 % of that.
+        if (bottom > pi / 3) continue;
+        const double weighted =
+            (2 * pi / c.width) * 0.5 * (std::pow(std::sin(bottom), 2) - std::pow(std::sin(top), 2));
+        const double bright = 1e6 * (0.2126 + 2 * 0.7152 + 3 * 0.0722);
+        EXPECT_NEAR(horizontal_irradiance(scene.distant[0]), bright * weighted,
+                    0.01 * bright * weighted)
+            << c.width << ' ' << c.x << ' ' << c.y;
+    }
+}
+
+TEST(DaylightKeys, AnEvenMapStaysEven) {
+    Folder folder;
+    for (const auto& [width, height] :
+         {std::pair(50, 25), std::pair(64, 32), std::pair(700, 350)}) {
+        Image picture(width, height);
+        for (Vec3f& pixel : picture.pixels) pixel = {100, 200, 300};
+        write_image(picture, folder.path() / "even.exr");
+        const Scene scene =
+            read(folder, "[sky]\nmodel = \"map\"\nfile = \"even.exr\"\nrotation = 17\n");
+        const RadianceMap& map = *scene.distant.at(0).map;
+        for (std::size_t i = 0; i < map.cells.size(); ++i)
+            ASSERT_NEAR(double(map.cells[i]), 100.0 * double(i % 3 + 1), 1e-3) << width << ' ' << i;
+    }
+}
+
 TEST(DaylightKeys, PicturesHaveALargestSizeAndFillIt) {
     Folder folder;
     for (const std::string kind : {".exr", ".hdr"}) {
@@ -179,7 +232,8 @@ TEST(DaylightKeys, WrongOnesAreRefusedWhereTheyStand) {
     refused("[sky]\nmodel = \"cie\"\ntype = 16\n", "day.toml:12:8: type: found");
     refused("[sky]\nmodel = \"clear\"\n", "where the sun stands");
     refused("[sun]\n", "where the sun stands");
-    refused("[sky]\nmodel = \"map\"\nfile = \"none.hdr\"\n", "day.toml:12:8: there is no file");
+    refused("[sky]\nmodel = \"map\"\nfile = \"none.hdr\"\n",
+            "day.toml:12:8: file: found the string 'none.hdr', expected a file; there is none at");
     refused("[sky]\nmodel = \"uniform\"\ntype = 3\n", "'type'");
     refused("[site]\nlatitude = 91\nlongitude = 0\ntime = 2026-01-01T12:00:00Z\n[sun]\n",
             "day.toml:11:12: latitude");

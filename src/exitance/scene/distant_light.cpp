@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/scene/distant_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,8 +31,8 @@ bool DistantLight::shines() const {
 double horizontal_irradiance(const DistantLight& light) {
     if (light.kind == DistantLight::Kind::disc)
         return light.irradiance * std::max(0.0, light.direction.y);
-    // ∫ L cosθ dω over 128 × 128 cells of equal solid angle, by their middles.
-    constexpr int n = 128;
+    // ∫ L cosθ dω over cells of equal solid angle, those of the map or 128 × 128, by their middles.
+    const int n = light.map ? std::max(128, static_cast<int>(light.map->side())) : 128;
     double sum = 0;
     for (int row = 0; row < n; ++row)
         for (int column = 0; column < n; ++column) {

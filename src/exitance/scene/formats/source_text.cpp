@@ -72,10 +72,19 @@ std::string read_whole_file(const std::filesystem::path& path, std::uint64_t mos
     return bytes;
 }
 
+std::string lower_extension(const std::filesystem::path& path) {
+    std::string out = path.extension().string();
+    for (char& c : out)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return out;
+}
+
 Place place_at(const std::string& file, std::string_view text, std::size_t offset) {
     const std::string_view before = text.substr(0, std::min(offset, text.size()));
-    const auto lines = static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n'));
-    const std::size_t newline = before.rfind('\n');
+    // Of old files, lines end with CR alone.
+    const char end = text.find('\n') == std::string_view::npos ? '\r' : '\n';
+    const auto lines = static_cast<std::size_t>(std::count(before.begin(), before.end(), end));
+    const std::size_t newline = before.rfind(end);
     const std::size_t line_begin = newline == std::string_view::npos ? 0 : newline + 1;
     return {file, lines + 1, characters(before.substr(line_begin)) + 1};
 }

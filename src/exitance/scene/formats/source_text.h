@@ -19,6 +19,9 @@ namespace exitance {
 std::string read_whole_file(const std::filesystem::path& path,
                             std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
+/// The ending of its name, from the last dot, in lower case.
+std::string lower_extension(const std::filesystem::path& path);
+
 /// Line and column (both from 1, columns in characters) of the byte at `offset` of `text`.
 Place place_at(const std::string& file, std::string_view text, std::size_t offset);
 
