@@ -143,6 +143,16 @@ TEST(Eulumdat, ANegativeNumberOfLampsIsAbsolutePhotometry) {
     EXPECT_FALSE(figures_of(p).output_ratio.has_value());
 }
 
+TEST(Eulumdat, ACircleThatStaysOpenIsAWarning) {
+    Sample sample;
+    std::string text = sample.text();
+    EXPECT_TRUE(parse(text).warnings.empty());
+    // The last plane at 290° instead of 315°: 70° to the first one, where others are 45° apart.
+    text.replace(text.find("\r\n315\r\n"), 7, "\r\n290\r\n");
+    ASSERT_EQ(parse(text).warnings.size(), 1U);
+    EXPECT_NE(parse(text).warnings[0].what.find("the C-planes end at 290°"), std::string::npos);
+}
+
 TEST(Eulumdat, RefusalsNamePlaceFoundAndExpected) {
     const std::string good = [] {
         Sample s;

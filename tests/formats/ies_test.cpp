@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -282,6 +283,35 @@ TEST(Ies, SmallNegativeCandelasAreZeroWithAWarning) {
     EXPECT_EQ(lamp.warnings[0].place.text(), "t.ies:13:8");
     s.table = "0 45 90\n0\n100 60 -5\n";
     expect_refused([&] { s.read(); }, "t.ies:13:8", "found the candela value -5, expected 0 or");
+}
+
+TEST(Ies, LinesEndInAnyWayAndBlankOnesComeFirst) {
+    Sample s;
+    const Photometry plain = s.read().photometry;
+    for (const std::string end : {"\r", "\r\n", "\n"}) {
+        std::string text;
+        for (const char c : "\n \n" + s.text()) text += c == '\n' ? end : std::string(1, c);
+        const LampFile lamp = parse(text);
+        EXPECT_EQ(lamp.format, "IES LM-63-2002");
+        EXPECT_EQ(lamp.photometry.name, "A lamp");
+        EXPECT_EQ(lamp.photometry.candela, plain.candela);
+        EXPECT_TRUE(lamp.warnings.empty());
+    }
+    s.table = "0 45 90\r0\r100 sixty 0\r";
+    std::string text = s.text();
+    std::replace(text.begin(), text.end(), '\n', '\r');
+    expect_refused([&] { parse(text); }, "t.ies:13:5", "'sixty'");
+}
+
+TEST(Ies, ACircleThatStaysOpenIsAWarning) {
+    Sample s;
+    s.lamp = "1 1000 1 3 4 1 2 0 0 0\n";
+    const std::string rows = "\n1 1 0\n1 1 0\n1 1 0\n1 1 0\n";
+    s.table = "0 45 90\n0 90 180 270" + rows;
+    ASSERT_EQ(s.read().warnings.size(), 1U);
+    EXPECT_NE(s.read().warnings[0].what.find("end at 270, expected 360"), std::string::npos);
+    s.table = "0 45 90\n0 90 180 360" + rows;
+    EXPECT_TRUE(s.read().warnings.empty());
 }
 
 TEST(Ies, WhatFollowsTheTableIsAWarning) {

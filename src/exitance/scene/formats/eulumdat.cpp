@@ -197,6 +197,17 @@ class EulumdatReader {
                 plane.candela.push_back(factor_ *
                                         fields_.number("an intensity in cd/klm", 0, most_candela));
         }
+        if (symmetry_ == 0 && angles.size() > 1) {
+            double step = 0;
+            for (std::size_t i = 1; i < angles.size(); ++i)
+                step = std::max(step, angles[i] - angles[i - 1]);
+            const double gap = angles.front() + 360 - angles.back();
+            if (gap > 1.5 * step)
+                out_.warnings.push_back(
+                    {plane_place_, fmt::format("the C-planes end at {:g}°, {:g}° from the first "
+                                               "one, with which they are taken to go on",
+                                               angles.back(), gap)});
+        }
         set_planes(p, std::move(table), symmetry());
     }
 

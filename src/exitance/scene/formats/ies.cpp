@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include "exitance/scene/formats/c_planes.h"
 #include "exitance/scene/formats/ies_opening.h"
@@ -153,12 +154,15 @@ class IesReader {
     void read_labels() {
         if (text_.starts_with("\xef\xbb\xbf")) at_ = 3;
         std::string key;
-        for (bool first = true; at_ < text_.size(); first = false) {
-            const std::size_t begin = at_, end = std::min(text_.find('\n', at_), text_.size());
+        for (bool first = true; at_ < text_.size();) {
+            // Lines end with LF, CR LF, or CR alone.
+            const std::size_t begin = at_,
+                              end = std::min(text_.find_first_of("\r\n", at_), text_.size());
             const std::string_view line = trimmed(text_.substr(begin, end - begin));
-            at_ = std::min(end + 1, text_.size());
+            at_ = std::min(end + (text_.substr(end, 2) == "\r\n" ? 2 : 1), text_.size());
+            if (first && line.empty()) continue;
             if (first) read_edition(line);
-            if (first && named_) continue;
+            if (std::exchange(first, false) && named_) continue;
             if (same_letters(line.substr(0, 4), "TILT")) {
                 std::string_view rest = trimmed(line.substr(4));
                 if (rest.starts_with('=')) {
@@ -299,14 +303,21 @@ class IesReader {
     }
 
     // What the range of horizontal angles leaves to symmetry (type C).
-    static LampSymmetry c_symmetry(const std::vector<double>& planes, const Place& last) {
+    LampSymmetry c_symmetry(const std::vector<double>& planes, const Place& last) {
         const auto near = [](double x, double y) { return std::abs(x - y) < 0.01; };
         if (planes.size() == 1) return LampSymmetry::rotational;
         const double from = planes.front(), to = planes.back();
         if (near(from, 0) && near(to, 90)) return LampSymmetry::both;
         if (near(from, 0) && near(to, 180)) return LampSymmetry::about_c0;
         if (near(from, 90) && near(to, 270)) return LampSymmetry::about_c90;
-        if (near(from, 0) && to > 180) return LampSymmetry::none;
+        if (near(from, 0) && to > 180) {
+            if (!near(to, 360))
+                out_.warnings.push_back(
+                    {last, fmt::format("the horizontal angles end at {:g}, expected 360; the plane "
+                                       "of 0 closes the circle",
+                                       to)});
+            return LampSymmetry::none;
+        }
         throw Error(last, fmt::format("found horizontal angles from {:g} to {:g}, expected 0, or "
                                       "from 0 to 90, 180 or 360, or from 90 to 270",
                                       from, to));

@@ -92,6 +92,10 @@ void LuminaireReader::add(const TomlTable& table) {
                     fmt::format("with this the project has {} lamps, more than {}; "
                                 "--max-luminaires raises the limit",
                                 lamps_, options_.max_luminaires));
+    for (const char* key : {"lumens", "watts", "candela", "lamp_lumens"})
+        if (table.has(key) && *table.number(key, 0, limits::exitance) == 0)
+            scene_.warnings.push_back(
+                {table.place(key), fmt::format("{}: found 0: the luminaire is dark", key)});
     const std::vector<Vec3> positions = lamp_positions(table);
     for (std::size_t i = 0; i < positions.size(); ++i) {
         if (scene_.polygons.size() > options_.max_polygons)
