@@ -33,4 +33,8 @@ std::string human_count(double value) {
     return fmt::format("{:.3g}{}", value, prefixes[prefix]);
 }
 
+std::string plural(std::size_t count, const std::string& one, const std::string& several) {
+    return fmt::format("{} {}", count, count == 1 ? one : several);
+}
+
 }  // namespace exitance::cli

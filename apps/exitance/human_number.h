@@ -2,6 +2,7 @@
 // Numbers as they are read aloud.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 namespace exitance::cli {
@@ -17,5 +18,8 @@ std::string human_percent(double fraction);
 
 /// A number and the unit, if there is one: "12.31 lm".
 std::string human_quantity(double value, const std::string& unit);
+
+/// "1 lamp", "2 lamps".
+std::string plural(std::size_t count, const std::string& one, const std::string& several);
 
 }  // namespace exitance::cli

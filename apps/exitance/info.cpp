@@ -69,7 +69,7 @@ class InfoCommand {
 
   private:
     void lamp() const {
-        if (diagram_ && diagram_->extension() != ".svg")
+        if (diagram_ && lower_extension(*diagram_) != ".svg")
             throw Error(Fault::wrong_use,
                         "diagrams are written as .svg, found '" + diagram_->string() + "'");
         LampFile lamp = read_lamp_file(file_, 1, read_options_);

@@ -7,6 +7,7 @@
 
 #include "exitance/run/atomic_file.h"
 #include "exitance/run/error.h"
+#include "exitance/scene/formats/source_text.h"
 
 namespace exitance::cli {
 
@@ -14,7 +15,7 @@ void require_output(const std::filesystem::path& output, const std::filesystem::
                     const std::vector<std::string>& endings) {
     std::error_code absent;
     const bool device = std::filesystem::is_other(output, absent);
-    const std::string ending = output.extension().string();
+    const std::string ending = lower_extension(output);
     if (!device && !endings.empty() &&
         std::find(endings.begin(), endings.end(), ending) == endings.end())
         throw Error(Fault::wrong_use, fmt::format("--output: '{}' is not allowed, expected a name "

@@ -90,6 +90,21 @@ PointTable read_points(std::istream& in, const std::string& name) {
     return table;
 }
 
+PointTable points_of(const SensorGrid& grid) {
+    PointTable table;
+    table.header = fmt::format("{}", fmt::join(names, ","));
+    const Vec3& n = grid.normal;
+    for (std::uint32_t j = 0; j < grid.rows; ++j)
+        for (std::uint32_t i = 0; i < grid.columns; ++i) {
+            const Vec3 p = grid.origin + grid.u * ((i + 0.5) / grid.columns) +
+                           grid.v * ((j + 0.5) / grid.rows);
+            table.points.push_back({p, normalized(n)});
+            table.lines.push_back(fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", p.x, p.y,
+                                              p.z, n.x, n.y, n.z));
+        }
+    return table;
+}
+
 void write_points(std::ostream& out, const PointTable& table, std::span<const std::string> columns,
                   std::span<const double> values) {
     std::string text = table.header;

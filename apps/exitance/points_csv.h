@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "exitance/scene/scene.h"
 #include "exitance/solution/gather.h"
 
 namespace exitance::cli {
@@ -21,6 +22,9 @@ struct PointTable {
 /// columns; normals are brought to unit length. `name` is what errors call it. Throws
 /// Error(bad_input) with name:line:column.
 PointTable read_points(std::istream& in, const std::string& name);
+
+/// The sensors of a grid, row by row: origin + (i + ½)/columns · u + (j + ½)/rows · v.
+PointTable points_of(const SensorGrid& grid);
 
 /// The lines of `table` with `columns.size()` values per point appended, NaN as "nan".
 void write_points(std::ostream& out, const PointTable& table, std::span<const std::string> columns,

@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <memory>
 
 #include "commands.h"
@@ -17,6 +19,7 @@
 #include "exitance/run/atomic_file.h"
 #include "exitance/solution/file.h"
 #include "exitance/solution/light_scenes.h"
+#include "human_number.h"
 #include "options_cli.h"
 #include "output_path.h"
 #include "points_csv.h"
@@ -37,17 +40,22 @@ class ProbeCommand {
         command.add_option("solution", solution_, "what solve wrote")
             ->type_name("file.glb")
             ->required();
+        auto* points =
+            command
+                .add_option("--points", points_,
+                            "table with the columns x,y,z,nx,ny,nz [m]; - = standard input")
+                ->type_name("file.csv");
         command
-            .add_option("--points", points_,
-                        "table with the columns x,y,z,nx,ny,nz [m]; - = standard input")
-            ->type_name("file.csv")
-            ->required();
+            .add_option("--grid", grid_,
+                        "instead of points, the sensors of a grid of the project; tells their "
+                        "least, mean and largest value on stderr")
+            ->type_name("name")
+            ->excludes(points);
         command
             .add_option("--output,-o", output_,
                         "the same table with E_r,E_g,E_b (one per band) appended; - = standard "
-                        "output")
-            ->type_name("file.csv")
-            ->required();
+                        "output; required with --points")
+            ->type_name("file.csv");
         command.add_flag("--groups", per_group_,
                          "also E_<group>_<band> of each light group by itself, at weight 1");
         command.add_option("--scene", scene_, "weigh the groups as this scene of the project says")
@@ -58,19 +66,24 @@ class ProbeCommand {
             "light groups with their weights. Where interpolate finds no surface that faces along\n"
             "the normal, the values are nan.\n"
             "\n"
-            "Example:\n"
-            "  exitance probe cornell.glb --points desk.csv -o desk_lux.csv --method gather");
+            "Examples:\n"
+            "  exitance probe cornell.glb --points desk.csv -o desk_lux.csv --method gather\n"
+            "  exitance probe office.glb --grid desk --method gather");
     }
 
     void run() {
         given_.apply({});
-        if (output_ != "-") {
-            require_output(output_, points_, {".csv"});
+        if (points_.empty() && !grid_)
+            throw Error(Fault::wrong_use, "expected --points or --grid: where to probe");
+        if (!points_.empty() && output_.empty())
+            throw Error(Fault::wrong_use, "--output is required with --points");
+        if (!output_.empty() && output_ != "-") {
+            if (!points_.empty()) require_output(output_, points_, {".csv"});
             require_output(output_, solution_, {".csv"});
         }
         Solution solution = read_solution(solution_);
         if (scene_) apply_light_scene(solution, *scene_);
-        const PointTable table = read_table();
+        const PointTable table = grid_ ? points_of(chosen_grid(solution)) : read_table();
         const std::vector<double> E = probe(solution, table.points, options_);
         const std::vector<std::string> names = column_names(solution);
         const std::vector<double> values = summed(solution, E, table.points.size());
@@ -78,7 +91,7 @@ class ProbeCommand {
             write_points(std::cout, table, names, values);
             if (!std::cout.flush())
                 throw Error(Fault::could_not_finish, "cannot write to standard output");
-        } else {
+        } else if (!output_.empty()) {
             write_atomically(output_,
                              [&](std::ostream& out) { write_points(out, table, names, values); });
         }
@@ -90,6 +103,7 @@ class ProbeCommand {
                        "exitance: no surface near {} of {} points that faces along the normal: "
                        "nan; --method gather works in free space\n",
                        missing, table.points.size());
+        if (grid_) tell_grid(solution, values, names.size());
     }
 
   private:
@@ -97,7 +111,40 @@ class ProbeCommand {
     GivenOptions given_;
     std::filesystem::path solution_, points_, output_;
     bool per_group_ = false;
-    std::optional<std::string> scene_;
+    std::optional<std::string> scene_, grid_;
+
+    const SensorGrid& chosen_grid(const Solution& solution) const {
+        std::vector<std::string> names;
+        for (const SensorGrid& grid : solution.grids) {
+            if (grid.name == *grid_) return grid;
+            names.push_back(grid.name);
+        }
+        throw Error(Fault::wrong_use, fmt::format("--grid: there is no grid '{}'{}", *grid_,
+                                                  names.empty() ? "; the solution has none"
+                                                                : suggestion(*grid_, names)));
+    }
+
+    // Of the sensors that have a value, all bands weighted as the eye does.
+    void tell_grid(const Solution& solution, const std::vector<double>& values,
+                   std::size_t columns) const {
+        double least = std::numeric_limits<double>::infinity(), largest = 0, sum = 0;
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < values.size(); i += columns) {
+            const auto first = values.begin() + std::ptrdiff_t(i);
+            const double E =
+                luminance(Spectrum(first, first + std::ptrdiff_t(solution.bands.size())));
+            if (std::isnan(E)) continue;
+            least = std::min(least, E), largest = std::max(largest, E), sum += E;
+            ++count;
+        }
+        if (count == 0) return;
+        const double mean = sum / double(count);
+        const std::string unit = irradiance_unit(solution.quantity);
+        fmt::print(stderr, "grid {}: {}, min {}, mean {}, max {}{}\n", *grid_,
+                   plural(count, "point", "points"), human_quantity(least, unit),
+                   human_quantity(mean, unit), human_quantity(largest, unit),
+                   mean > 0 ? fmt::format(", uniformity {:.2f} (min / mean)", least / mean) : "");
+    }
 
     PointTable read_table() const {
         if (points_ == "-") return read_points(std::cin, "standard input");

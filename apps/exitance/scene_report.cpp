@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "exitance/scene/formats/general_geometry.h"
+#include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/groups.h"
 #include "exitance/scene/spectrum.h"
 #include "exitance/scene/texture_map.h"
@@ -20,7 +21,7 @@ namespace {
 constexpr std::size_t most_lines = 40;  // of materials, groups or problems that are listed
 
 std::string format_name(const std::filesystem::path& file) {
-    const std::string extension = file.extension().string();
+    const std::string extension = lower_extension(file);
     if (extension == ".toml") return "lighting project";
     if (extension == ".gltf" || extension == ".glb") return "glTF 2.0";
     if (extension == ".mgf") return "MGF";
@@ -41,6 +42,14 @@ std::string point_text(const Vec3& p) {
     return fmt::format("({}, {}, {})", human_number(p.x), human_number(p.y), human_number(p.z));
 }
 
+// Altitude, and azimuth from −z over +x, or where z is up from +y.
+std::string angles_text(const Vec3& direction, const Vec3& up) {
+    const auto angles = sky_angles(direction, up);
+    if (!angles) return "";
+    return fmt::format(" ({:.1f}° above the horizon, azimuth {:.1f}° from {} over +x)",
+                       angles->altitude, angles->azimuth, up.y > 0.5 ? "−z" : "+y");
+}
+
 std::string bands_text(const Scene& scene, const Spectrum& value) {
     if (std::all_of(value.begin(), value.end(), [&](double v) { return v == value[0]; })) return "";
     std::string out;
@@ -49,11 +58,27 @@ std::string bands_text(const Scene& scene, const Spectrum& value) {
     return " (" + out + ")";
 }
 
-std::string plural(std::size_t count, const std::string& one, const std::string& several) {
-    return fmt::format("{} {}", count, count == 1 ? one : several);
+}  // namespace
+
+std::optional<SkyAngles> sky_angles(const Vec3& direction, const Vec3& up) {
+    constexpr double degree = std::numbers::pi / 180;
+    const Vec3 y{0, 1, 0}, z{0, 0, 1};
+    if (up != y && up != z) return std::nullopt;
+    const double north = up == y ? -direction.z : direction.y;
+    const double azimuth = std::atan2(direction.x, north) / degree;
+    return SkyAngles{std::asin(std::clamp(dot(direction, up), -1.0, 1.0)) / degree,
+                     azimuth < 0 ? azimuth + 360 : azimuth};
 }
 
-}  // namespace
+std::string scene_text(const LightScene& scene) {
+    std::string out = fmt::format("Scene {}:", scene.name);
+    const char* sign = " ";
+    for (const auto& [group, factor] : scene.factors) {
+        out += fmt::format("{}{} {:g}", sign, group, factor);
+        sign = ", ";
+    }
+    return out + (scene.factors.empty() ? " as it is\n" : "\n");
+}
 
 SceneReport::SceneReport(const Scene& scene, std::vector<Problem> problems,
                          std::filesystem::path file)
@@ -113,7 +138,9 @@ std::string SceneReport::geometry_text() const {
         out += fmt::format(" ({}, {})", plural(triangles_, "triangle", "triangles"),
                            plural(quads_, "quad", "quads"));
     else
-        out += triangles_ > 0 ? ", all triangles" : ", all quads";
+        out += scene_.polygons.size() == 1 ? triangles_ > 0 ? ", a triangle" : ", a quad"
+               : triangles_ > 0            ? ", all triangles"
+                                           : ", all quads";
     out += fmt::format(", {}, {:.4g} m²\n", plural(scene_.surfaces.size(), "surface", "surfaces"),
                        area_);
     const Vec3 size = bounds_.size();
@@ -144,9 +171,11 @@ std::string SceneReport::materials_text() const {
         if (m.two_sided) out += ", two-sided";
         if (!m.specular.empty() && luminance(m.specular) > 0)
             out += fmt::format(", mirrors {:.3g}", luminance(m.specular));
-        if (m.transmits())
-            out += fmt::format(", transmits {:.3g}",
-                               luminance(m.transmittance) + luminance(m.diffuse_transmittance));
+        if (luminance(m.transmittance) > 0)
+            out += fmt::format(", transmits {:.3g}", luminance(m.transmittance));
+        if (luminance(m.diffuse_transmittance) > 0)
+            out += fmt::format(", transmits {:.3g} diffusely (taken as absorbed)",
+                               luminance(m.diffuse_transmittance));
         if (m.emits())
             out +=
                 fmt::format(", emits {}{}",
@@ -193,8 +222,9 @@ std::string SceneReport::distant_text() const {
             out += fmt::format("Sky {}: {} on open ground\n", light.name,
                                human_quantity(horizontal_irradiance(light), unit));
         else
-            out += fmt::format("Sun {}: {} across its rays, from {}, {:.3g}° wide\n", light.name,
+            out += fmt::format("Sun {}: {} across its rays, from {}{}, {:.3g}° wide\n", light.name,
                                human_quantity(light.irradiance, unit), point_text(light.direction),
+                               angles_text(light.direction, scene_.up),
                                light.diameter * 180 / std::numbers::pi);
     }
     return out;
@@ -209,6 +239,7 @@ std::string SceneReport::views_text() const {
     for (const SensorGrid& g : scene_.grids)
         out += fmt::format("Grid {}: {} × {} points over {:.4g} × {:.4g} m, facing {}\n", g.name,
                            g.columns, g.rows, length(g.u), length(g.v), point_text(g.normal));
+    for (const LightScene& s : scene_.light_scenes) out += scene_text(s);
     for (const Setting& s : scene_.settings)
         out += fmt::format("Setting {} = {}\n", s.name, s.value);
     return out;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,15 @@ struct LampFacts {
     double area = 0, flux = 0;  ///< of both sides where both emit [m², flux_unit]
     std::uint32_t surfaces = 0, luminaires = 0, distant = 0;
 };
+
+struct SkyAngles {
+    double altitude = 0, azimuth = 0;  ///< above the horizon; from −z (or +y) over +x [degrees]
+};
+/// Where a unit vector points; nothing where neither y nor z is up.
+std::optional<SkyAngles> sky_angles(const Vec3& direction, const Vec3& up);
+
+/// One line: the name and the factors of the groups.
+std::string scene_text(const LightScene& scene);
 
 /// Refers to the scene it is given.
 class SceneReport {

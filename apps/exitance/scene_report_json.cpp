@@ -52,6 +52,32 @@ Json json_of(const std::vector<SensorGrid>& grids) {
     return out;
 }
 
+Json json_of(const std::vector<LightScene>& scenes) {
+    Json out = Json::array();
+    for (const LightScene& s : scenes) out.push_back({{"name", s.name}, {"factors", s.factors}});
+    return out;
+}
+
+Json json_of(const std::vector<DistantLight>& lights, const Vec3& up) {
+    Json out = Json::array();
+    for (const DistantLight& light : lights) {
+        Json& entry = out.emplace_back(Json{{"name", light.name}});
+        if (light.kind == DistantLight::Kind::sky) {
+            entry["kind"] = "sky";
+            entry["horizontal"] = horizontal_irradiance(light);
+            continue;
+        }
+        entry["kind"] = "sun";
+        entry["normal"] = light.irradiance;
+        entry["direction"] = json_of(light.direction);
+        if (const auto angles = sky_angles(light.direction, up)) {
+            entry["altitude"] = angles->altitude;
+            entry["azimuth"] = angles->azimuth;
+        }
+    }
+    return out;
+}
+
 const char* quantity_name(Quantity quantity) {
     if (quantity == Quantity::photometric) return "photometric";
     return quantity == Quantity::radiometric ? "radiometric" : "unitless";
@@ -104,8 +130,10 @@ std::string SceneReport::json() const {
                               {"surfaces", group.surfaces},
                               {"luminaires", group.luminaires},
                               {"distant", group.distant}});
+    out["distant"] = json_of(scene_.distant, scene_.up);
     out["cameras"] = json_of(scene_.cameras);
     out["grids"] = json_of(scene_.grids);
+    out["scenes"] = json_of(scene_.light_scenes);
     Json& settings = out["settings"] = Json::object();
     for (const Setting& setting : scene_.settings) settings[setting.name] = setting.value;
     Json& notes = out["notes"] = Json::array();
@@ -145,6 +173,7 @@ std::string SolutionReport::json() const {
     out["counters"] = solution_.counters;
     out["cameras"] = json_of(solution_.cameras);
     out["grids"] = json_of(solution_.grids);
+    out["scenes"] = json_of(solution_.light_scenes);
     return lines(out);
 }
 

@@ -18,10 +18,12 @@ std::string SolutionReport::text() const {
     const Vec3 size = bounds_.size();
     std::string out = fmt::format(
         "{}\n{}: a solved scene, irradiance at every vertex\n\n"
-        "Mesh: {} vertices, {} triangles, {} materials\n"
+        "Mesh: {}, {}, {}\n"
         "  {:.4g} × {:.4g} × {:.4g} m\n\nLight groups: {}\n",
-        solution_.title, file_.string(), solution_.positions.size(), solution_.triangles.size(),
-        solution_.materials.size(), size.x, size.y, size.z, solution_.groups.size());
+        solution_.title, file_.string(), plural(solution_.positions.size(), "vertex", "vertices"),
+        plural(solution_.triangles.size(), "triangle", "triangles"),
+        plural(solution_.materials.size(), "material", "materials"), size.x, size.y, size.z,
+        solution_.groups.size());
     for (const LightGroup& group : solution_.groups)
         out += group.weight == 1 ? fmt::format("  {}\n", group.name)
                                  : fmt::format("  {}, dimmed to {:g}\n", group.name, group.weight);
@@ -44,6 +46,7 @@ std::string SolutionReport::text() const {
     for (const Camera& camera : solution_.cameras) out += fmt::format("Camera {}\n", camera.name);
     for (const SensorGrid& grid : solution_.grids)
         out += fmt::format("Grid {}: {} × {} points\n", grid.name, grid.columns, grid.rows);
+    for (const LightScene& scene : solution_.light_scenes) out += scene_text(scene);
     if (!solution_.options.empty()) out += "\nSolved with\n";
     for (const auto& [name, value] : solution_.options)
         if (!value.empty()) out += fmt::format("  {} = {}\n", name, value);

@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "exitance/scene/formats/source_text.h"
 #include "human_number.h"
 
 namespace exitance::cli {
@@ -30,7 +32,24 @@ std::string energy_line(const Solution& solution) {
         share(energy.escaped), share(energy.unshot), human_percent(std::abs(energy.imbalance())));
 }
 
+// How far the balance may be off before it is worth a warning: an error was asked for, of points.
+double tolerable_imbalance(const Solution& solution) {
+    const auto asked = solution.options.find("error");
+    const auto error =
+        asked == solution.options.end() ? std::nullopt : finite_number(asked->second);
+    return std::max(0.05, 2 * error.value_or(0));
+}
+
 }  // namespace
+
+std::string balance_warning(const Solution& solution) {
+    const double off = solution.energy.imbalance();
+    if (!(std::abs(off) > tolerable_imbalance(solution))) return "";
+    return fmt::format(
+        "the light that arrived is {} {} than what was emitted: most often a lamp is very close to "
+        "a surface or inside of one (exitance info names it), where the mesh is too coarse for it",
+        human_percent(std::abs(off)), off > 0 ? "less" : "more");
+}
 
 void print_findings(const Scene& scene) {
     for (const Problem& note : scene.notes)
@@ -54,17 +73,24 @@ std::string error_text(const ErrorEstimate& error) {
 }
 
 std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds) {
-    std::string out =
-        fmt::format("{}: {} vertices, {} triangles, light groups: {}\n", file.string(),
-                    solution.positions.size(), solution.triangles.size(), group_names(solution));
+    std::string out = fmt::format("{}: {}, {}, light groups: {}\n", file.string(),
+                                  plural(solution.positions.size(), "vertex", "vertices"),
+                                  plural(solution.triangles.size(), "triangle", "triangles"),
+                                  group_names(solution));
     out += fmt::format("  energy  {}\n", energy_line(solution));
+    const std::string warning = balance_warning(solution);
+    if (!warning.empty()) out += fmt::format("  warning {}\n", warning);
     if (solution.error) out += fmt::format("  error   {}\n", error_text(*solution.error));
     const auto count = [&](const char* name) {
         const auto found = solution.counters.find(name);
         return human_count(found == solution.counters.end() ? 0 : found->second);
     };
-    out += fmt::format("  work    {} shots, {} rays, {:.3g} s\n", count("shots"), count("rays"),
-                       seconds);
+    const auto things = [&](const char* name, const char* one) {
+        const std::string number = count(name);
+        return number + " " + (number == "1" ? one : name);
+    };
+    out += fmt::format("  work    {}, {}, {:.3g} s\n", things("shots", "shot"),
+                       things("rays", "ray"), seconds);
     return out;
 }
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sun, sky and named scenes, from a project to numbers and pictures."""
+import json
 import math
+import re
 import unittest
 
 from program import BAD_INPUT, WRONG_USE, ProgramTest, extras
@@ -55,6 +57,70 @@ class Daylight(ProgramTest):
     def test_a_scene_that_is_not_there(self):
         self.refuse(WRONG_USE, "did you mean 'dull'", "probe", self.solution, "--points",
                     self.points, "-o", "-", "--scene", "dul")
+
+    def test_a_grid_of_the_project(self):
+        project = self.write("grid.toml", PROJECT + """[[grid]]
+name = "floor"
+origin = [1, 0, 1]
+u = [0, 0, 2]
+v = [2, 0, 0]
+columns = 3
+rows = 2
+""")
+        self.succeed("solve", project, "-o", "grid.glb")
+        done = self.succeed("probe", "grid.glb", "--grid", "floor", "-o", "q.csv")
+        lines = (self.folder / "q.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "x,y,z,nx,ny,nz,E_r,E_g,E_b")
+        self.assertEqual(len(lines), 7)
+        first, last = ([float(x) for x in lines[i].split(",")] for i in (1, 6))
+        for found, expected in zip(first[:6], [1.5, 0, 1 + 1 / 3, 0, 1, 0]):
+            self.assertAlmostEqual(found, expected, places=7)
+        for found, expected in zip(last[:3], [2.5, 0, 1 + 5 / 3]):
+            self.assertAlmostEqual(found, expected, places=7)
+        light = math.pi * 1000 + 40000 * 0.5
+        self.assertAlmostEqual(first[6], light, delta=2e-3 * light)
+        said = re.match(r"grid floor: 6 points, min (\S+) lx, mean (\S+) lx, max (\S+) lx, "
+                        r"uniformity (\S+) \(min / mean\)\n$", done.stderr)
+        self.assertTrue(said, done.stderr)
+        for value in said.groups()[:3]:
+            self.assertAlmostEqual(float(value), light, delta=2e-3 * light)
+        self.assertAlmostEqual(float(said[4]), 1, delta=0.01)
+        # Points of a table give the same.
+        self.write("points.csv", "\n".join(",".join(line.split(",")[:6]) for line in lines) + "\n")
+        self.assertEqual(
+            self.succeed("probe", "grid.glb", "--points", "points.csv", "-o", "-").stdout,
+            (self.folder / "q.csv").read_text())
+        self.refuse(WRONG_USE, "did you mean 'floor'", "probe", "grid.glb", "--grid", "flor")
+        self.refuse(WRONG_USE, "the solution has none", "probe", self.solution, "--grid", "floor")
+        self.refuse(WRONG_USE, "excludes", "probe", "grid.glb", "--grid", "floor", "--points",
+                    "points.csv", "-o", "-")
+        self.refuse(WRONG_USE, "--points or --grid", "probe", "grid.glb", "-o", "-")
+        self.refuse(WRONG_USE, "--output is required", "probe", "grid.glb", "--points",
+                    "points.csv")
+
+    def test_info_tells_scenes_and_where_the_sun_stands(self):
+        project = self.folder / "day.toml"
+        for file in (project, self.solution):
+            self.assertIn("Scene dull: sky 0.5, sun 0\n", self.succeed("info", file).stdout)
+            facts = json.loads(self.succeed("info", file, "--json").stdout)
+            self.assertEqual(facts["scenes"],
+                             [{"name": "dull", "factors": {"sky": 0.5, "sun": 0}}])
+        self.assertIn("(30.0° above the horizon, azimuth 180.0° from −z over +x)",
+                      self.succeed("info", project).stdout)
+        sun = json.loads(self.succeed("info", project, "--json").stdout)["distant"][1]
+        self.assertAlmostEqual(sun["altitude"], 30)
+        self.assertAlmostEqual(sun["azimuth"], 180)
+        west = self.write("west.toml", PROJECT.replace("altitude = 30",
+                                                       "altitude = 30\nazimuth = 270"))
+        sun = json.loads(self.succeed("info", west, "--json").stdout)["distant"][1]
+        self.assertAlmostEqual(sun["azimuth"], 270)
+
+    def test_night_is_noted(self):
+        night = self.write("night.toml", PROJECT.replace("altitude = 30", "altitude = -5"))
+        self.assertIn("note: ", self.succeed("solve", night, "-o", "night.glb").stderr)
+        self.assertIn("night.toml:10:1: the sun is 5.0° below the horizon: it is night",
+                      self.succeed("info", night).stdout)
+        self.assertNotIn("night", self.succeed("info", self.folder / "day.toml").stdout)
 
     def test_a_wrong_model_is_refused_where_it_stands(self):
         wrong = self.write("wrong.toml", PROJECT.replace("uniform", "unifrom"))
