@@ -223,6 +223,47 @@ TEST(ProjectLuminaires, ArraysWithoutEndAreRefusedAtOnce) {
     EXPECT_EQ(read_scene(points, options).luminaires.size(), 1200U);
 }
 
+TEST(ProjectLuminaires, WhatCanHardlyBeMeantIsAWarning) {
+    const Project project;
+    const auto warned = [&](const std::string& file, const std::string& words) {
+        const Scene scene = project.read("file = \"" + file + "\"");
+        ASSERT_EQ(scene.warnings.size(), 1U) << file;
+        EXPECT_EQ(scene.warnings[0].place.file, (project.folder.path() / file).string());
+        EXPECT_NE(scene.warnings[0].what.find(words), std::string::npos) << scene.warnings[0].what;
+    };
+    const auto ies = [&](const std::string& name, const std::string& lumens,
+                         const std::string& table) {
+        project.folder.write(
+            name, "IESNA91\nTILT=NONE\n1 " + lumens + " 1 2 1 1 2 0 0 0\n1 1 9\n" + table);
+        return name;
+    };
+    EXPECT_TRUE(
+        project.read("file = \"" + ies("a.ies", "400", "0 90\n0\n50 50\n") + "\"").warnings.empty())
+        << "2π 50 lm = 314 lm of 400 lm";
+    EXPECT_TRUE(project.read("file = \"" + ies("up.ies", "-1", "90 180\n0\n50 50\n") + "\"")
+                    .warnings.empty());
+    warned(ies("dark.ies", "-1", "0 90\n0\n0 0\n"), "is dark");
+    warned(ies("more.ies", "300", "0 90\n0\n50 50\n"), "more than the 300 lm of its lamps");
+    warned(ies("short.ies", "-1", "0 80\n0\n50 50\n"), "the angles γ go from 0 to 80°");
+    warned(ies("late.ies", "-1", "10 90\n0\n50 50\n"), "the angles γ go from 10 to 90°");
+    // What the file of this test sends out is 78.5 % of its lamps; it says 100 %, or 78 %.
+    std::string text = ldt();
+    const double ratio = project.one("file = \"lamp.ldt\"").flux() / 2000;
+    warned("lamp.ldt", "the file states 100.0 %");
+    text.replace(text.find("\n100\n100\n1\n"), 11, fmt::format("\n100\n{:.1f}\n1\n", 101 * ratio));
+    project.folder.write("stated.ldt", text);
+    EXPECT_TRUE(project.read("file = \"stated.ldt\"").warnings.empty());
+    for (const std::string lamp :
+         {"shape = \"point\"\nlumens = 0", "shape = \"point\"\ncandela = 0",
+          "shape = \"disc\"\nradius = 1\naim = [0, -1, 0]\nlumens = 0"}) {
+        const Scene dark = project.read(lamp);
+        ASSERT_EQ(dark.warnings.size(), 1U) << lamp;
+        EXPECT_NE(dark.warnings[0].what.find("found 0: the luminaire is dark"), std::string::npos);
+    }
+    EXPECT_TRUE(project.read("shape = \"point\"\nlumens = 1\ndimming = 0").warnings.empty())
+        << "switched off";
+}
+
 TEST(ProjectLuminaires, RefusalsNameThePlace) {
     const Project project;
     const std::string toml = (project.folder.path() / "p.toml").string();
@@ -241,7 +282,7 @@ TEST(ProjectLuminaires, RefusalsNameThePlace) {
     expect_refused([&] { project.read("file = \"lamp.ldt\"\nlamp_set = 2"); },
                    (project.folder.path() / "lamp.ldt").string() + ":26:1",
                    "found 1 set of lamps, expected a set 2");
-    refused("file = \"lamp.ldt\"\naim = [0, 0, 0]", "5:7", "not the zero vector");
+    refused("file = \"lamp.ldt\"\naim = [0, 0, 0]", "5:7", "aim: found the vector zero");
     refused("file = \"lamp.ldt\"\ntarget = [1, 3, 2]", "5:10", "not the lamp's own");
     refused("file = \"lamp.ldt\"\naim = [1, 0, 0]\ntarget = [0, 0, 0]", "6:10", "both 'aim' and");
     refused("file = \"lamp.ldt\"\ndimming = 1.5", "5:11", "dimming");
@@ -257,7 +298,8 @@ TEST(ProjectLuminaires, RefusalsNameThePlace) {
     refused("shape = \"spot\"\nlumens = 1\nbeam = 20\nhousing = true", "7:11", "a spot has no");
     project.folder.write("plain.ies",
                          "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 9\n0 90\n0\n1 1\n");
-    refused("file = \"plain.ies\"\nhousing = true", "5:11", "how large the luminaire is");
+    refused("file = \"plain.ies\"\nhousing = true", "5:11",
+            "housing: 'plain.ies' does not say how large the luminaire is");
     refused("file = \"plain.ies\"\nlamp_lumens = 5", "5:15", "measured as a whole");
     project.folder.write("bad.ldt", "Works\n3\n9\n");
     expect_refused([&] { project.read("file = \"bad.ldt\""); },

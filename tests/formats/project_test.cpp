@@ -297,6 +297,68 @@ TEST_F(ProjectFiles, ProjectsIncludeProjects) {
     EXPECT_EQ(scene.settings.back().value, "0.2");  // the outer one comes last and wins
 }
 
+// The first project may name what it likes; one that it names stays in the first one's folder.
+TEST_F(ProjectFiles, ProjectsThatAreNamedStayInTheFirstOnesFolder) {
+    const auto outside = square();
+    folder_.write("lamp.ies",
+                  "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0 1 1 50\n0 90\n0\n1 1\n");
+    folder_.write("sky.hdr", "none");
+    folder_.write("outside.mgf", "m grey =\n");
+    const auto include = [&](const std::string& text) {
+        project(text, "scene/parts/inner.toml");
+        return read_scene(
+            project("[[geometry]]\nfile = \"parts/inner.toml\"\n", "scene/outer.toml"));
+    };
+    const std::string inner = (folder_.path() / "scene/parts/inner.toml").string();
+    const std::string held = "expected a file inside the folder of the first project";
+    for (const std::string& file : {std::string("../../square.glb"), outside.string()}) {
+        EXPECT_EQ(
+            read_scene(project("[[geometry]]\nfile = \"" + file + "\"\n", "scene/parts/own.toml"))
+                .polygons.size(),
+            2U);
+        expect_refused([&] { include("[[geometry]]\nfile = \"" + file + "\"\n"); }, inner + ":2:8",
+                       held);
+    }
+    expect_refused(
+        [&] {
+            include(
+                "[[luminaire]]\nname = \"l\"\nfile = \"../../lamp.ies\"\nposition = [0, 0, 0]\n");
+        },
+        inner + ":3:8", held);
+    expect_refused([&] { include("[sky]\nmodel = \"map\"\nfile = \"../../sky.hdr\"\n"); },
+                   inner + ":3:8", held);
+    // A link out of the folder is no way out.
+    std::filesystem::create_symlink(outside, folder_.path() / "scene/parts/link.glb");
+    expect_refused([&] { include("[[geometry]]\nfile = \"link.glb\"\n"); }, inner + ":2:8", held);
+    // Up, but not out.
+    folder_.write("scene/own.glb", testing::square_glb());
+    EXPECT_EQ(include("[[geometry]]\nfile = \"../own.glb\"\n").polygons.size(), 2U);
+    // An MGF that a project names is not the first file either.
+    const auto included = folder_.path() / "outside.mgf";
+    const auto mgf = folder_.write("scene/room.mgf", "i " + included.string() + "\n");
+    EXPECT_NO_THROW(read_scene(mgf));
+    EXPECT_NE(testing::refusal([&] {
+                  read_scene(project("[[geometry]]\nfile = \"room.mgf\"\n", "scene/outer.toml"));
+              }).find("expected a file inside the scene's folder"),
+              std::string::npos);
+}
+
+TEST_F(ProjectFiles, DaylightIsPhotometricUnlessSomethingSaysOtherwise) {
+    for (const std::string light : {"[sun]\naltitude = 30\n", "[sky]\nmodel = \"overcast\"\n"}) {
+        const std::string bare =
+            "[[material]]\nname = \"grey\"\nreflectance = 0.5\n[[polygon]]\nmaterial = \"grey\"\n"
+            "corners = [[0, 0, 0], [0, 0, 1], [1, 0, 1]]\n";
+        EXPECT_EQ(read_scene(project(bare)).quantity, Quantity::unitless);
+        EXPECT_EQ(read_scene(project(bare + light)).quantity, Quantity::photometric);
+        const Scene watts = read_scene(project(
+            bare + light +
+            "[[luminaire]]\nname = \"l\"\nshape = \"point\"\nposition = [0, 0, 0]\nwatts = 1\n"));
+        EXPECT_EQ(watts.quantity, Quantity::radiometric);
+        EXPECT_EQ(read_scene(project("quantity = \"unitless\"\n" + bare + light)).quantity,
+                  Quantity::unitless);
+    }
+}
+
 TEST_F(ProjectFiles, CyclesShowTheChain) {
     const auto a = project("[[geometry]]\nfile = \"b.toml\"\n", "a.toml");
     const auto b = project("\n[[geometry]]\nfile = \"./c.toml\"\n", "b.toml");

@@ -58,6 +58,24 @@ TEST(Validate, FindsLuminairesThatAreFarAway) {
     EXPECT_TRUE(found(problems, "'lamp' is far outside"));
 }
 
+TEST(Validate, FindsLuminairesOnSurfaces) {
+    Scene scene = lamp_and_wall();
+    const auto polygon = scene.corners(scene.polygons[0]);
+    const Vec3 normal = normalized(cross(polygon[1] - polygon[0], polygon[2] - polygon[0]));
+    const Vec3 middle = (polygon[0] + polygon[2]) / 2;
+    const auto problems = [&](const Vec3& at) {
+        scene.luminaires = {testing::hanging(testing::cosine_photometry(1), at)};
+        return validate(scene);
+    };
+    for (const double before : {0.0, 0.0009, -0.0009})
+        EXPECT_TRUE(found(problems(middle + normal * before), "stands within 1 mm of")) << before;
+    EXPECT_TRUE(problems(middle + normal * 0.0011).empty());
+    EXPECT_TRUE(problems(middle + normal * 0.0011).empty());
+    EXPECT_TRUE(problems(middle + normal * 0.0011).empty());
+    // Beside it, in its plane.
+    EXPECT_TRUE(problems(polygon[0] + (polygon[0] - polygon[2]) * 0.01).empty());
+}
+
 TEST(Validate, FindsMaterialsThatKeepLightForEver) {
     for (const double rho : {1.0, 1.5, -0.1, std::nan("")}) {
         Scene scene = lamp_and_wall();

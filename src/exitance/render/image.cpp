@@ -15,6 +15,7 @@
 
 #include "exitance/run/atomic_file.h"
 #include "exitance/run/error.h"
+#include "exitance/scene/formats/source_text.h"
 
 namespace exitance {
 
@@ -105,7 +106,7 @@ std::string encode_hdr(const Image& image) {
 }  // namespace
 
 ImageFormat image_format(const std::filesystem::path& path) {
-    const std::string ending = path.extension().string();
+    const std::string ending = lower_extension(path);
     if (ending == ".png") return ImageFormat::png;
     if (ending == ".exr") return ImageFormat::exr;
     if (ending == ".hdr") return ImageFormat::hdr;

@@ -48,6 +48,12 @@ class Nesting {
         open_.push_back(canonical);
     }
     void leave() { open_.pop_back(); }
+    /// What is asked of reading the file entered last.
+    ReadOptions options() const {
+        ReadOptions out = options_;
+        if (open_.size() > 1) out.held_in = open_[0].parent_path();
+        return out;
+    }
 
   private:
     const ReadOptions& options_;
@@ -68,17 +74,17 @@ Scene read_afit_with_display(const std::filesystem::path& path, std::string_view
 }
 
 // The extension decides; a file without a known one is judged by how it begins.
-Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nesting& nesting,
-                   const ReadOptions& options) {
+Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nesting& nesting) {
     nesting.enter(path, named);
+    const std::string extension = lower_extension(path);
+    const ReadOptions options = nesting.options();
     std::string bytes = read_whole_file(path, options.most_bytes());
-    const std::string extension = path.extension().string();
     const auto read = [&]() -> Scene {
         if (extension == ".toml")
             return parse_project(
                 path, bytes,
                 [&](const std::filesystem::path& file, const Place& at) {
-                    return read_by_kind(file, at, nesting, options);
+                    return read_by_kind(file, at, nesting);
                 },
                 options);
         if (extension == ".glb" || extension == ".gltf") return parse_gltf(path, bytes, options);
@@ -107,7 +113,7 @@ Scene read_by_kind(const std::filesystem::path& path, const Place& named, Nestin
 
 Scene read_scene(const std::filesystem::path& path, const ReadOptions& options) {
     Nesting nesting(options);
-    Scene scene = read_by_kind(path, {path.string(), 0, 0}, nesting, options);
+    Scene scene = read_by_kind(path, {path.string(), 0, 0}, nesting);
     mend(scene);
     if (options.strict && !scene.warnings.empty())
         throw Error(scene.warnings[0].place,

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <optional>
 #include <string>
 
 #include "exitance/run/options.h"
@@ -20,6 +22,10 @@ struct ReadOptions {
     std::uint64_t max_lines = 20'000'000;
     std::uint64_t max_texture_pixels = 16384 * 8192;
     std::uint64_t max_luminaires = 100'000;
+
+    /// Where files lie that the scene names, if it is itself named by another: the folder of the
+    /// first file. The first, which is the user's own, may name any.
+    std::optional<std::filesystem::path> held_in{};
 
     /// max_file_size [bytes].
     std::uint64_t most_bytes() const {

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <utility>
 
+#include "exitance/math/box_tree.h"
 #include "exitance/math/polygon.h"
 #include "exitance/scene/coplanar.h"
 #include "exitance/scene/mend.h"
@@ -17,6 +20,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t most_of_a_kind = 20;  // surfaces or pairs of them that are named one by one
+constexpr double on_surface = 1e-3;         // of a luminaire's middle [m]
 constexpr double far_away = 10;  // from the scene, in its diagonals: millimetres taken for metres
 
 Place place_of(const Scene& scene, const Polygon& polygon) {
@@ -151,6 +155,52 @@ void check_luminaires(const Scene& scene, std::vector<Problem>& problems) {
         tell(problems, {}, fmt::format("… and so are {} more", outside - most_of_a_kind));
 }
 
+// Distance of `p` from the convex polygon `c`.
+double distance_to(const Vec3& p, std::span<const Vec3> c) {
+    double nearest = std::numeric_limits<double>::infinity();
+    const Vec3 normal = vector_area(c);
+    bool inside = true;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        const Vec3 a = c[i], along = c[(i + 1) % c.size()] - a;
+        inside = inside && dot(cross(along, p - a), normal) >= 0;
+        const double s = std::clamp(dot(p - a, along) / dot(along, along), 0.0, 1.0);
+        nearest = std::min(nearest, length(p - a - along * s));
+    }
+    return inside ? std::abs(dot(p - c[0], normalized(normal))) : nearest;
+}
+
+// A lamp without polygons that stands on a surface sends half of its light behind it.
+void check_lamps_on_surfaces(const Scene& scene, std::vector<Problem>& problems) {
+    if (scene.luminaires.empty()) return;
+    std::vector<Box> boxes(scene.polygons.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        for (std::size_t k = 0; k < scene.polygons[i].size(); ++k)
+            boxes[i].add(scene.corners(scene.polygons[i])[k]);
+    const BoxTree tree(boxes);
+    std::size_t found = 0;
+    for (const Luminaire& luminaire : scene.luminaires) {
+        const Vec3 reach{on_surface, on_surface, on_surface};
+        Box near;
+        near.add(luminaire.position - reach);
+        near.add(luminaire.position + reach);
+        const Polygon* on = nullptr;
+        tree.for_overlapping(near, [&](std::uint32_t i) {
+            const Polygon& polygon = scene.polygons[i];
+            const auto corners = scene.corners(polygon);
+            const std::span<const Vec3> c(corners.data(), polygon.size());
+            if (!on && area(c) > 0 && distance_to(luminaire.position, c) < on_surface)
+                on = &polygon;
+        });
+        if (on && ++found <= most_of_a_kind)
+            tell(problems, luminaire.place,
+                 fmt::format("the luminaire '{}' stands within 1 mm of {}: what it sends past that "
+                             "is not where it should be; a centimetre in front will do",
+                             luminaire.name, scene.label(on->surface)));
+    }
+    if (found > most_of_a_kind)
+        tell(problems, {}, fmt::format("… and so do {} more", found - most_of_a_kind));
+}
+
 }  // namespace
 
 std::vector<Problem> validate(const Scene& scene) {
@@ -170,6 +220,7 @@ std::vector<Problem> validate(const Scene& scene) {
         tell(problems, {}, "nothing emits light: the scene stays dark");
     if (!finite) return problems;
     check_luminaires(scene, problems);
+    check_lamps_on_surfaces(scene, problems);
     const FaceOverlaps overlaps = find_overlaps(scene);
     report_pairs(scene, overlaps.duplicates, "lie in the same place", problems);
     report_pairs(scene, overlaps.overlaps, "overlap in one plane, facing the same way", problems);

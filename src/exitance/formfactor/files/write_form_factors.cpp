@@ -6,6 +6,7 @@
 #include <array>
 
 #include "exitance/run/atomic_file.h"
+#include "exitance/scene/formats/source_text.h"
 
 namespace exitance {
 
@@ -31,7 +32,7 @@ const FormFactorFormat& find_form_factor_format(const std::string& name,
     std::vector<std::string> names, endings;
     for (const FormFactorFormat& format : formats) {
         if (!name.empty() && name == format.name) return format;
-        if (name.empty() && *format.ending && path.extension() == format.ending) return format;
+        if (name.empty() && *format.ending && lower_extension(path) == format.ending) return format;
         names.emplace_back(format.name);
         if (*format.ending) endings.emplace_back(format.ending);
     }

@@ -243,7 +243,9 @@ ImportedScene assimp_import(const std::filesystem::path& path, const std::string
     Assimp::DefaultLogger::kill();
     if (scene == nullptr) {
         if (!out.refused.empty()) return out;
-        throw std::runtime_error(importer.GetErrorString());
+        const std::string why = importer.GetErrorString();
+        if (why.find("std::bad_alloc") != std::string::npos) throw std::bad_alloc();
+        throw std::runtime_error(why);
     }
     std::size_t left_out = 0;
     for (unsigned i = 0; i < scene->mNumMeshes; ++i)

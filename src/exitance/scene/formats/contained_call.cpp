@@ -145,8 +145,8 @@ std::string contained_call(const std::function<std::string()>& work, const CallL
     const char kind = bytes[0];
     bytes.erase(0, 1);
     if (kind == out_of_memory)
-        throw CallFailed(
-            fmt::format("it needs more than {} MiB of memory", limits.memory / (1024 * 1024)));
+        throw CallFailed(fmt::format("the importer ran out of memory, it needs more than {} MiB",
+                                     limits.memory / (1024 * 1024)));
     if (kind == threw) throw CallFailed(bytes);
     return bytes;
 }

@@ -10,6 +10,7 @@
 #include "exitance/scene/formats/environment_map.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/luminaire_keys.h"
+#include "exitance/scene/formats/named_file.h"
 #include "exitance/scene/formats/project_keys.h"
 #include "exitance/scene/formats/toml_direction.h"
 #include "exitance/scene/merge.h"
@@ -95,7 +96,12 @@ class DaylightReader {
                              *site_->number("longitude", -180, 180), time.moment);
             if (!to_sun_) to_sun_ = sun_direction(position, north());
         }
-        if (to_sun_) altitude_ = std::asin(std::clamp(to_sun_->y, -1.0, 1.0));
+        if (!to_sun_) return;
+        altitude_ = std::asin(std::clamp(to_sun_->y, -1.0, 1.0));
+        if (*altitude_ < 0 && !(sun_ && sun_->has("direction")))
+            scene_.notes.push_back({sun_ ? sun_->place() : site_->place(),
+                                    fmt::format("the sun is {:.1f}° below the horizon: it is night",
+                                                -*altitude_ / degree)});
     }
 
     double north() const { return site_ ? site_->number("north", -360, 360).value_or(0) : 0; }
@@ -144,9 +150,8 @@ class DaylightReader {
         sky_->require("file");
         light.strength = factor * sky_->number("scale", 0, most).value_or(1);
         const double turn = sky_->number("rotation", -360, 360).value_or(0) + north();
-        light.map = std::make_shared<const RadianceMap>(
-            read_environment_map((folder_ / *sky_->text("file")).lexically_normal(), turn,
-                                 sky_->place("file"), options_));
+        light.map = std::make_shared<const RadianceMap>(read_environment_map(
+            named_file(*sky_, "file", folder_, options_), turn, sky_->place("file"), options_));
     }
 
     // Fills the model; returns the horizontal irradiance to expect of it.

@@ -38,9 +38,7 @@ constexpr std::array<Kind, 7> kinds{{{".obj", "OBJ"},
                                      {".ifc", "IFC"}}};
 
 const Kind* kind_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const std::string extension = lower_extension(path);
     const auto* found = std::find_if(kinds.begin(), kinds.end(),
                                      [&](const Kind& k) { return k.extension == extension; });
     return found == kinds.end() ? nullptr : found;

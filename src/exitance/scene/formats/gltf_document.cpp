@@ -226,6 +226,19 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
             if (!used["buffers"][i].contains("uri"))
                 json.refuse(fmt::format("buffers[{}]", i), "'uri' is missing");
 
+    // (tinygltf would not tell which.)
+    const std::filesystem::path folder = path.parent_path();
+    for (std::size_t i = 0; used.contains("buffers") && i < used["buffers"].size(); ++i) {
+        const auto& buffer = used["buffers"][i];
+        if (!buffer.contains("uri")) continue;
+        const std::string uri = buffer["uri"].get<std::string>();
+        const auto file = file_of_uri(uri, folder);
+        if (file && !is_file_below(*file, folder))
+            json.refuse(
+                fmt::format("buffers[{}].uri", i),
+                fmt::format("found {}, expected a file in the folder of the glTF", in_quotes(uri)));
+    }
+
     Beside beside{path.parent_path().empty() ? "." : path.parent_path().string(), most_bytes};
     tinygltf::TinyGLTF loader;
     loader.SetFsCallbacks({is_file, [](const std::string& name, void*) { return name; }, read_file,

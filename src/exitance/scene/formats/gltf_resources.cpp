@@ -64,6 +64,11 @@ bool is_data(const std::string& uri) {
 
 }  // namespace
 
+std::optional<fs::path> file_of_uri(const std::string& uri, const fs::path& folder) {
+    if (is_data(uri)) return std::nullopt;
+    return folder / percent_decoded(uri);
+}
+
 bool is_file_below(const fs::path& path, const fs::path& folder) {
     std::error_code failure;
     if (!fs::is_regular_file(path, failure)) return false;

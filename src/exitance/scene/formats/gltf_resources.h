@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "exitance/scene/formats/json_text.h"
@@ -16,6 +17,10 @@ namespace exitance {
 
 /// Whether `path` is a regular file in `folder` or below; links count for what they point at.
 bool is_file_below(const std::filesystem::path& path, const std::filesystem::path& folder);
+
+/// The file that a URI names, looked up in `folder`; nothing for one that holds its bytes itself.
+std::optional<std::filesystem::path> file_of_uri(const std::string& uri,
+                                                 const std::filesystem::path& folder);
 
 class GltfResources {
   public:

@@ -27,6 +27,10 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 
 }  // namespace
 
+bool leads_into(const fs::path& path, const fs::path& folder) {
+    return lies_in(real_path(path), real_path(folder.empty() ? fs::path(".") : folder));
+}
+
 IncludeFiles::IncludeFiles(const fs::path& root, std::string text, const ReadOptions& options)
     : options_(options), folder_(real_path(root).parent_path()) {
     open_.push_back(std::make_shared<SourceFile>(SourceFile{root, std::move(text)}));
@@ -37,7 +41,7 @@ fs::path IncludeFiles::resolve(const std::string& name, const Place& named) cons
     if (name.find('\0') != std::string::npos)
         throw Error(named, fmt::format("found {}, expected the name of a file", in_quotes(name)));
     const fs::path given(name);
-    const bool first = open_.size() == 1;
+    const bool first = open_.size() == 1 && !options_.held_in;
     const fs::path path = given.is_absolute() ? given : current()->path.parent_path() / given;
     if ((given.is_absolute() && first) || lies_in(real_path(path), folder_)) return path;
     throw Error(named, fmt::format("found {}, expected a file inside the scene's folder{}",

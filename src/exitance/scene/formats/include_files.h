@@ -19,6 +19,9 @@ struct SourceFile {
     std::string text;
 };
 
+/// Does `path` lead into `folder` or a folder below it, links followed?
+bool leads_into(const std::filesystem::path& path, const std::filesystem::path& folder);
+
 class IncludeFiles {
   public:
     /// `root` has been read already: `text`. Limits are those of `options`.
@@ -27,7 +30,8 @@ class IncludeFiles {
     /// The file opened last and not left.
     std::shared_ptr<const SourceFile> current() const { return open_.back(); }
     /// Where a name in the current file leads to. Throws Error at `named` for a path that leaves
-    /// the folder of the root, unless the root itself names it absolutely.
+    /// the folder of the root, unless the root itself names it absolutely and is the user's own
+    /// file (ReadOptions::held_in).
     std::filesystem::path resolve(const std::string& name, const Place& named) const;
     /// Opens the file `name`; its text is read once. Throws Error at `named` if it cannot be read,
     /// is open already, or if a limit is exceeded.

@@ -9,6 +9,8 @@
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/luminaire_keys.h"
 #include "exitance/scene/formats/luminaires.h"
+#include "exitance/scene/formats/named_file.h"
+#include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/formats/toml_direction.h"
 
 namespace exitance {
@@ -53,7 +55,7 @@ double level(const TomlTable& table, const Photometry& photometry) {
                                                       chosen, key));
         chosen = key;
     }
-    if (!chosen && table.has("file")) return 1;
+    if (!chosen && table.has("file")) return 1;  // as the file has it
     if (!chosen)
         throw Error(table.place(), "found none of 'lumens', 'watts' and 'candela', expected one");
     const std::string key = chosen;
@@ -95,10 +97,7 @@ std::shared_ptr<const Photometry> LuminaireReader::photometry(const TomlTable& t
         return std::make_shared<const Photometry>(spot_photometry(beam, field));
     }
     refuse_keys(table, "luminaire with a file", {"beam", "field", "watts"});
-    const std::filesystem::path file = (folder_ / *table.text("file")).lexically_normal();
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
-        table.refuse("file", "a file; there is none at " + file.string());
+    const std::filesystem::path file = named_file(table, "file", folder_, options_);
     if (!is_lamp_file(file)) table.refuse("file", "a photometric file, .ies or .ldt");
     const std::uint32_t set = table.count("lamp_set", 1, 1000).value_or(1);
     auto& kept = files_[fmt::format("{} {}", set, file.string())];
@@ -132,7 +131,11 @@ void LuminaireReader::add_source(const TomlTable& table, const std::string& name
                                 flux, limits::exitance));
     if (table.flag("housing").value_or(false)) {
         const auto& size = luminaire.photometry->housing;
-        if (!size) table.refuse("housing", "a file that says how large the luminaire is");
+        if (!size)
+            throw Error(table.place("housing"),
+                        fmt::format("housing: {} does not say how large the luminaire is, expected "
+                                    "a file that does, or no housing",
+                                    in_quotes(*table.text("file"))));
         give_housing(luminaire, *size);
     }
     scene_.luminaires.push_back(std::move(luminaire));

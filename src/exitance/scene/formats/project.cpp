@@ -17,6 +17,7 @@
 #include "exitance/scene/formats/glob.h"
 #include "exitance/scene/formats/limits.h"
 #include "exitance/scene/formats/luminaires.h"
+#include "exitance/scene/formats/named_file.h"
 #include "exitance/scene/formats/project_keys.h"
 #include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/formats/toml_direction.h"
@@ -92,11 +93,7 @@ class ProjectReader {
     // [[geometry]]: the file first as it is in its own unit and axes, then scaled, turned, moved.
     Part geometry(const TomlTable& table) {
         table.require("file");
-        const std::filesystem::path file =
-            (path_.parent_path() / *table.text("file")).lexically_normal();
-        std::error_code ignored;
-        if (!std::filesystem::exists(file, ignored))
-            table.refuse("file", "a file; there is none at " + file.string());
+        const std::filesystem::path file = named_file(table, "file", path_.parent_path(), options_);
 
         Transform placing = Transform::scale(unit(table));
         const std::string up = table.text("up").value_or("y");
@@ -150,7 +147,8 @@ class ProjectReader {
         root_.refuse("quantity", "radiometric, photometric or unitless");
     }
 
-    // What the project says; else what its own keys are measured in; else what the files say.
+    // What the project says; else what its own keys are measured in; else what the files say; else
+    // what daylight is measured in.
     void decide_quantity(const std::vector<TomlTable>& materials,
                          const std::vector<TomlTable>& luminaires, const std::vector<Part>& parts) {
         quantity_ = given_quantity();
@@ -163,6 +161,8 @@ class ProjectReader {
         for (const Part& part : parts)
             if (!quantity_ && part.scene.quantity != Quantity::unitless)
                 quantity_ = part.scene.quantity;
+        // Without more, sun and sky are as bright as outdoors, in lux.
+        if (!quantity_ && (root_.has("sky") || root_.has("sun"))) quantity_ = Quantity::photometric;
         scene_.quantity = quantity_.value_or(Quantity::unitless);
     }
 

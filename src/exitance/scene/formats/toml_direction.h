@@ -12,7 +12,9 @@ namespace exitance {
 /// `key` as a unit vector, `otherwise` if it is absent; throws Error if that is zero.
 inline Vec3 direction(const TomlTable& table, const std::string& key, const Vec3& otherwise) {
     const Vec3 v = table.vector(key).value_or(otherwise);
-    if (!(length(v) > limits::length)) table.refuse(key, "a direction, not the zero vector");
+    if (!(length(v) > limits::length))
+        throw Error(table.place(key),
+                    key + ": found the vector zero, expected a direction, of any length but zero");
     return normalized(v);
 }
 

@@ -13,6 +13,7 @@
 
 #include "exitance/math/box.h"
 #include "exitance/run/atomic_file.h"
+#include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/formats/write_losses.h"
 #include "exitance/scene/formats/write_scene.h"
 
@@ -214,7 +215,7 @@ std::vector<std::string> write_gltf(const Scene& scene, const std::filesystem::p
     std::vector<std::string> lost = losses(scene, carries);
     const double factor = emission_factor(scene, Quantity::photometric, lost);
     GltfWriter writer(scene, factor);
-    const bool binary = path.extension() != ".gltf";
+    const bool binary = lower_extension(path) != ".gltf";
     write_atomically(path, [&](std::ostream& out) { writer.write(out, binary); });
     return lost;
 }

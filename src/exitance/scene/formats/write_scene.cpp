@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "exitance/run/error.h"
+#include "exitance/scene/formats/source_text.h"
 #include "exitance/scene/merge.h"
 
 namespace exitance {
@@ -62,7 +63,7 @@ std::vector<std::string> writable_endings() {
 }
 
 std::vector<std::string> write_scene(const Scene& scene, const std::filesystem::path& path) {
-    const auto found = writers().find(path.extension().string());
+    const auto found = writers().find(lower_extension(path));
     if (found == writers().end())
         throw Error(Fault::wrong_use,
                     fmt::format("no scene can be written as '{}'", path.string()));
