@@ -46,8 +46,9 @@ std::string point_text(const Vec3& p) {
 std::string angles_text(const Vec3& direction, const Vec3& up) {
     const auto angles = sky_angles(direction, up);
     if (!angles) return "";
-    return fmt::format(" ({:.1f}° above the horizon, azimuth {:.1f}° from {} over +x)",
-                       angles->altitude, angles->azimuth, up.y > 0.5 ? "−z" : "+y");
+    return fmt::format(" ({:.1f}° {} the horizon, azimuth {:.1f}° from {} over +x)",
+                       std::abs(angles->altitude), angles->altitude < 0 ? "below" : "above",
+                       angles->azimuth, up.y > 0.5 ? "−z" : "+y");
 }
 
 std::string bands_text(const Scene& scene, const Spectrum& value) {

@@ -32,15 +32,13 @@ std::string energy_line(const Solution& solution) {
         share(energy.escaped), share(energy.unshot), human_percent(std::abs(energy.imbalance())));
 }
 
-// How far the balance may be off before it is worth a warning: an error was asked for, of points.
+// How far the balance may be off before it is worth a warning.
 double tolerable_imbalance(const Solution& solution) {
     const auto asked = solution.options.find("error");
     const auto error =
         asked == solution.options.end() ? std::nullopt : finite_number(asked->second);
     return std::max(0.05, 2 * error.value_or(0));
 }
-
-}  // namespace
 
 std::string balance_warning(const Solution& solution) {
     const double off = solution.energy.imbalance();
@@ -50,6 +48,8 @@ std::string balance_warning(const Solution& solution) {
         "a surface or inside of one (exitance info names it), where the mesh is too coarse for it",
         human_percent(std::abs(off)), off > 0 ? "less" : "more");
 }
+
+}  // namespace
 
 void print_findings(const Scene& scene) {
     for (const Problem& note : scene.notes)

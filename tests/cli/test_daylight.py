@@ -118,7 +118,7 @@ rows = 2
     def test_night_is_noted(self):
         night = self.write("night.toml", PROJECT.replace("altitude = 30", "altitude = -5"))
         self.assertIn("note: ", self.succeed("solve", night, "-o", "night.glb").stderr)
-        self.assertIn("night.toml:10:1: the sun is 5.0° below the horizon: it is night",
+        self.assertIn("night.toml:11:1: the sun is 5.0° below the horizon: it is night",
                       self.succeed("info", night).stdout)
         self.assertNotIn("night", self.succeed("info", self.folder / "day.toml").stdout)
 

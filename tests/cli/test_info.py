@@ -177,6 +177,42 @@ group = "office"
         self.assertEqual(facts["kind"], "solution")
         self.assertAlmostEqual(facts["energy"]["emitted"], 0.4, places=6)
 
+    def test_what_is_outside_or_beyond_memory_is_called_so(self):
+        gltf = self.write("out.gltf", json.dumps(
+            {"asset": {"version": "2.0"},
+             "buffers": [{"byteLength": 4, "uri": "../../../etc/hostname"}]}, indent=1))
+        self.refuse(BAD_INPUT, r"out\.gltf:8:\d+: .*found '\.\./\.\./\.\./etc/hostname', expected a file "
+                    "in the folder of the glTF", "info", gltf)
+        ply = self.write("many.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\n"
+                         "property float x\nproperty float y\nproperty float z\nelement face 1\n"
+                         "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n1 1 0\n"
+                         "3 0 1 2\n")
+        done = self.run_program("info", ply)
+        self.assertEqual(done.returncode, BAD_INPUT)
+        self.assertRegex(done.stderr, r"many\.ply: cannot be read as PLY: ")
+        self.assertNotIn("bad_alloc", done.stderr)
+
+    def test_one_is_no_plural(self):
+        one = self.write("one.toml", """[[material]]
+name = "m"
+reflectance = 0.5
+[[polygon]]
+material = "m"
+corners = [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 0, 0]]
+""")
+        self.assertIn("Geometry: 1 polygon, a quad, 1 surface, 1 m²",
+                      self.succeed("info", one).stdout)
+        self.succeed("solve", one, "-o", "one.glb")
+        self.assertRegex(self.succeed("info", "one.glb").stdout,
+                         r"Mesh: \d+ vertices, \d+ triangles, 1 material\n")
+
+    def test_diffuse_transmission_is_called_so(self):
+        mgf = self.write("td.mgf", "m veil =\n  c\n  td 0.3\n  rd 0.2\nv a =\n p 0 0 0\nv b =\n"
+                         " p 1 0 0\nv c =\n p 0 1 0\nf a b c\n")
+        text = self.succeed("info", mgf).stdout
+        self.assertIn("transmits 0.3 diffusely (taken as absorbed)", text)
+        self.assertNotIn("transmits 0.3,", text)
+
     def test_bad_files(self):
         good = box()
         for name, text, message in [

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "exitance/math/frame.h"
 #include "exitance/run/progress.h"
 #include "exitance/run/random.h"
+#include "exitance/scene/builtin_photometry.h"
 #include "exitance/scene/coplanar.h"
 #include "scene/lamps.h"
 #include "scene/small_scenes.h"
@@ -58,22 +60,30 @@ TEST(Validate, FindsLuminairesThatAreFarAway) {
     EXPECT_TRUE(found(problems, "'lamp' is far outside"));
 }
 
-TEST(Validate, FindsLuminairesOnSurfaces) {
+TEST(Validate, FindsLuminairesThatShineThroughTheSurfaceTheyStandOn) {
     Scene scene = lamp_and_wall();
-    const auto polygon = scene.corners(scene.polygons[0]);
-    const Vec3 normal = normalized(cross(polygon[1] - polygon[0], polygon[2] - polygon[0]));
-    const Vec3 middle = (polygon[0] + polygon[2]) / 2;
-    const auto problems = [&](const Vec3& at) {
-        scene.luminaires = {testing::hanging(testing::cosine_photometry(1), at)};
+    const auto corners = scene.corners(scene.polygons[0]);
+    const Vec3 normal = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    const Vec3 middle = (corners[0] + corners[2]) / 2;
+    const auto problems = [&](Photometry photometry, const Vec3& at, const Vec3& aim) {
+        scene.luminaires = {testing::hanging(std::move(photometry), at)};
+        const Frame frame(aim);
+        scene.luminaires[0].nadir = aim;
+        scene.luminaires[0].c0 = frame.to_world({1, 0, 0});
         return validate(scene);
     };
+    const Photometry even = isotropic_photometry(), down = testing::cosine_photometry(1);
     for (const double before : {0.0, 0.0009, -0.0009})
-        EXPECT_TRUE(found(problems(middle + normal * before), "stands within 1 mm of")) << before;
-    EXPECT_TRUE(problems(middle + normal * 0.0011).empty());
-    EXPECT_TRUE(problems(middle + normal * 0.0011).empty());
-    EXPECT_TRUE(problems(middle + normal * 0.0011).empty());
+        EXPECT_TRUE(found(problems(even, middle + normal * before, normal), "shines through it"))
+            << before;
+    EXPECT_TRUE(problems(even, middle + normal * 0.0011, normal).empty());
     // Beside it, in its plane.
-    EXPECT_TRUE(problems(polygon[0] + (polygon[0] - polygon[2]) * 0.01).empty());
+    EXPECT_TRUE(problems(even, corners[0] + (corners[0] - corners[2]) * 0.01, normal).empty());
+    // Mounted on it, buried in it, and turned to it.
+    EXPECT_TRUE(problems(down, middle, normal).empty());
+    EXPECT_TRUE(problems(down, middle + normal * 0.0009, normal).empty());
+    EXPECT_FALSE(problems(down, middle - normal * 0.0009, normal).empty());
+    EXPECT_FALSE(problems(down, middle + normal * 0.0009, -normal).empty());
 }
 
 TEST(Validate, FindsMaterialsThatKeepLightForEver) {

@@ -14,6 +14,7 @@
 #include "exitance/math/polygon.h"
 #include "exitance/scene/coplanar.h"
 #include "exitance/scene/mend.h"
+#include "exitance/scene/sky.h"
 
 namespace exitance {
 
@@ -21,6 +22,7 @@ namespace {
 
 constexpr std::size_t most_of_a_kind = 20;  // surfaces or pairs of them that are named one by one
 constexpr double on_surface = 1e-3;         // of a luminaire's middle [m]
+constexpr double on_plane = 1e-6;           // on which side of it cannot be told [m]
 constexpr double far_away = 10;  // from the scene, in its diagonals: millimetres taken for metres
 
 Place place_of(const Scene& scene, const Polygon& polygon) {
@@ -169,7 +171,33 @@ double distance_to(const Vec3& p, std::span<const Vec3> c) {
     return inside ? std::abs(dot(p - c[0], normalized(normal))) : nearest;
 }
 
-// A lamp without polygons that stands on a surface sends half of its light behind it.
+// The share of a luminaire's light that goes to the side of `normal`, by the middles of 2 × 16 × 16
+// cells of equal solid angle.
+double share_towards(const Luminaire& luminaire, const Vec3& normal) {
+    constexpr int n = 16;
+    double all = 0, there = 0;
+    for (int i = 0; i < 2 * n * n; ++i) {
+        const Vec3 d = direction_of({i >= n * n, (i % n + 0.5) / n, (i / n % n + 0.5) / n});
+        const double I = luminaire.intensity(d);
+        all += I;
+        if (dot(d, normal) > 0) there += I;
+    }
+    return all > 0 ? there / all : 0;
+}
+
+// Does a luminaire that all but touches the polygon `c` send light through it? One that is mounted
+// on a ceiling sends none.
+bool shines_through(const Luminaire& luminaire, std::span<const Vec3> c) {
+    const Vec3 normal = unit_normal(c);
+    const double before = dot(luminaire.position - c[0], normal);
+    const double in_front = share_towards(luminaire, normal);
+    const double through = std::abs(before) < on_plane ? std::min(in_front, 1 - in_front)
+                           : before > 0                ? 1 - in_front
+                                                       : in_front;
+    return through > 0.01;
+}
+
+// Lamps without polygons whose light a surface cuts off where they stand.
 void check_lamps_on_surfaces(const Scene& scene, std::vector<Problem>& problems) {
     if (scene.luminaires.empty()) return;
     std::vector<Box> boxes(scene.polygons.size());
@@ -188,13 +216,14 @@ void check_lamps_on_surfaces(const Scene& scene, std::vector<Problem>& problems)
             const Polygon& polygon = scene.polygons[i];
             const auto corners = scene.corners(polygon);
             const std::span<const Vec3> c(corners.data(), polygon.size());
-            if (!on && area(c) > 0 && distance_to(luminaire.position, c) < on_surface)
+            if (!on && area(c) > 0 && distance_to(luminaire.position, c) < on_surface &&
+                shines_through(luminaire, c))
                 on = &polygon;
         });
         if (on && ++found <= most_of_a_kind)
             tell(problems, luminaire.place,
-                 fmt::format("the luminaire '{}' stands within 1 mm of {}: what it sends past that "
-                             "is not where it should be; a centimetre in front will do",
+                 fmt::format("the luminaire '{}' stands within 1 mm of {} and shines through it: "
+                             "expected a centimetre in front of it at least",
                              luminaire.name, scene.label(on->surface)));
     }
     if (found > most_of_a_kind)

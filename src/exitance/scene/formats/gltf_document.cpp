@@ -233,10 +233,13 @@ tinygltf::Model load_gltf(const std::filesystem::path& path, const GltfParts& pa
         if (!buffer.contains("uri")) continue;
         const std::string uri = buffer["uri"].get<std::string>();
         const auto file = file_of_uri(uri, folder);
-        if (file && !is_file_below(*file, folder))
-            json.refuse(
-                fmt::format("buffers[{}].uri", i),
-                fmt::format("found {}, expected a file in the folder of the glTF", in_quotes(uri)));
+        if (!file || is_file_below(*file, folder)) continue;
+        std::error_code ignored;
+        json.refuse(
+            fmt::format("buffers[{}].uri", i),
+            std::filesystem::exists(*file, ignored)
+                ? fmt::format("found {}, expected a file in the folder of the glTF", in_quotes(uri))
+                : fmt::format("there is no file {}", file->string()));
     }
 
     Beside beside{path.parent_path().empty() ? "." : path.parent_path().string(), most_bytes};
