@@ -45,7 +45,8 @@ std::string balance_warning(const Solution& solution) {
     if (!(std::abs(off) > tolerable_imbalance(solution))) return "";
     return fmt::format(
         "the light that arrived is {} {} than what was emitted: most often a lamp is very close to "
-        "a surface or inside of one (exitance info names it), where the mesh is too coarse for it",
+        "a surface or inside of one (exitance info names those within 1 mm), where the mesh is too "
+        "coarse for it",
         human_percent(std::abs(off)), off > 0 ? "less" : "more");
 }
 

@@ -38,6 +38,26 @@ class Solve(ProgramTest):
         self.assertEqual(os.listdir(self.folder).count("box.glb"), 1)
         self.assertEqual(len(os.listdir(self.folder)), 2)
 
+    def test_a_balance_that_is_far_off_is_a_warning(self):
+        # An even lamp over a black floor of 4 m: half of its light lands within a spot of its height.
+        project = """[[material]]
+name = "black"
+reflectance = 0
+[[polygon]]
+material = "black"
+corners = [[-2, 0, -2], [-2, 0, 2], [2, 0, 2], [2, 0, -2]]
+[[luminaire]]
+name = "lamp"
+shape = "point"
+lumens = 1000
+position = [0, HEIGHT, 0]
+"""
+        for height, off in ("0.0005", True), ("1", False):
+            scene = self.write("lamp.toml", project.replace("HEIGHT", height))
+            said = self.succeed("solve", scene, "-o", "lamp.glb", *QUICK).stdout
+            self.assertEqual("  warning the light that arrived is " in said, off, said)
+            self.assertEqual("shines through it" in self.succeed("info", scene).stdout, off)
+
     def test_quiet(self):
         done = self.solve(*QUICK, "--quiet")
         self.assertEqual(done.stdout + done.stderr, "")
