@@ -282,7 +282,7 @@ TEST(ProjectLuminaires, RefusalsNameThePlace) {
     expect_refused([&] { project.read("file = \"lamp.ldt\"\nlamp_set = 2"); },
                    (project.folder.path() / "lamp.ldt").string() + ":26:1",
                    "found 1 set of lamps, expected a set 2");
-    refused("file = \"lamp.ldt\"\naim = [0, 0, 0]", "5:7", "aim: found the vector zero");
+    refused("file = \"lamp.ldt\"\naim = [0, 0, 0]", "5:7", "aim: found the zero vector");
     refused("file = \"lamp.ldt\"\ntarget = [1, 3, 2]", "5:10", "not the lamp's own");
     refused("file = \"lamp.ldt\"\naim = [1, 0, 0]\ntarget = [0, 0, 0]", "6:10", "both 'aim' and");
     refused("file = \"lamp.ldt\"\ndimming = 1.5", "5:11", "dimming");

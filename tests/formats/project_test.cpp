@@ -423,7 +423,7 @@ TEST(Project, ErrorsNameThePlaceAndWhatWasExpected) {
             "rectangle, disc, sphere, point or spot");
     refused("radius = 0.1", "radius = 0", "34:10", "a number from 1e-09 up");
     refused("radius = 0.1", "width = 0.1", "29:1", "has no 'radius'");
-    refused("aim = [0, -1, 0]", "aim = [0, 0, 0]", "33:7", "not the zero vector");
+    refused("aim = [0, -1, 0]", "aim = [0, 0, 0]", "33:7", "found the zero vector");
     refused("lumens = 800", "lumens = -800", "35:10", "a number from 0");
     refused("lumens = 800", "lumens = 800\nexitance = 3", "29:1", "found several of");
     refused("lumens = 800", "", "29:1", "found none of");
@@ -433,7 +433,7 @@ TEST(Project, ErrorsNameThePlaceAndWhatWasExpected) {
     refused("fov = 60", "fov = 180", "43:7", "0.01 to 179");
     refused("columns = 10", "columns = 100000", "50:11", "1 to 10000");
     refused("columns = 10", "columns = -1", "50:11", "1 to 10000");
-    refused("normal = [0, 1, 0]", "normal = [0, 0, 0]", "52:10", "not the zero vector");
+    refused("normal = [0, 1, 0]", "normal = [0, 0, 0]", "52:10", "found the zero vector");
     refused("v = [0, 0, 1]", "v = 1", "49:5", "3 numbers in brackets");
     refused("seed = 7", "seed = [7]", "58:8", "found an array");
     refused("seed = 7", "seed = 2020-01-01", "58:8", "the date or time");

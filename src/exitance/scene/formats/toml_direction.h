@@ -13,8 +13,7 @@ namespace exitance {
 inline Vec3 direction(const TomlTable& table, const std::string& key, const Vec3& otherwise) {
     const Vec3 v = table.vector(key).value_or(otherwise);
     if (!(length(v) > limits::length))
-        throw Error(table.place(key),
-                    key + ": found the vector zero, expected a direction, of any length but zero");
+        throw Error(table.place(key), key + ": found the zero vector, expected a direction");
     return normalized(v);
 }
 
