@@ -5,7 +5,7 @@ import math
 import re
 import unittest
 
-from program import BAD_INPUT, WRONG_USE, ProgramTest, extras
+from program import BAD_INPUT, ROOT, WRONG_USE, ProgramTest, extras
 
 PROJECT = """quantity = "photometric"
 [[material]]
@@ -114,6 +114,24 @@ rows = 2
                                                        "altitude = 30\nazimuth = 270"))
         sun = json.loads(self.succeed("info", west, "--json").stdout)["distant"][1]
         self.assertAlmostEqual(sun["azimuth"], 270)
+
+    def test_the_worked_example_of_a_living_room(self):
+        scenes = ROOT / "scenes"
+        if not (scenes / "../../shared/scenes/godot/living_room.glb").exists():
+            self.skipTest("../shared/scenes/godot/living_room.glb is not there")
+        self.succeed("solve", scenes / "living_room_daylight.toml", "-o", "room.glb", "--error",
+                     "0.3")
+        # Above the courtyard's walls nothing hides the sun: 91 355 lx from 44.5 degrees, by hand.
+        above = self.write("above.csv", "x,y,z,nx,ny,nz\n0,3.95,10,0,1,0\n")
+        done = self.succeed("probe", "room.glb", "--points", above, "-o", "-", "--groups",
+                            "--method", "gather")
+        values = [float(x) for x in done.stdout.splitlines()[1].split(",")[6:]]
+        pendant, sky, sun = (sum(w * e for w, e in zip((0.2126, 0.7152, 0.0722), values[i:i + 3]))
+                             for i in (3, 6, 9))
+        self.assertEqual(pendant, 0)
+        self.assertAlmostEqual(sun, 64038, delta=150)
+        self.assertLess(sky, 13777 * 1.05)  # open ground, and a little from the ground around
+        self.assertGreater(sky, 0.9 * 13777)
 
     def test_night_is_noted(self):
         night = self.write("night.toml", PROJECT.replace("altitude = 30", "altitude = -5"))
