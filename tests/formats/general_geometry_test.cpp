@@ -205,7 +205,9 @@ TEST(GeneralGeometry, ColladaHierarchyCameraAndLight) {
 </perspective></technique_common></optics></camera></library_cameras>
 <library_lights><light id="lamp" name="lamp"><technique_common><point><color>2 2 2</color></point>
 </technique_common></light><light id="sun" name="sun"><technique_common><directional>
-<color>5 5 5</color></directional></technique_common></light></library_lights>
+<color>5 5 5</color></directional></technique_common></light>
+<light id="glow" name="glow"><technique_common><ambient><color>1 1 1</color></ambient>
+</technique_common></light></library_lights>
 <library_effects><effect id="oak-fx"><profile_COMMON><technique sid="common"><lambert>
 <diffuse><color>0.5 0.25 0.125 1</color></diffuse></lambert></technique></profile_COMMON></effect>
 </library_effects>
@@ -226,6 +228,7 @@ TEST(GeneralGeometry, ColladaHierarchyCameraAndLight) {
 <node id="eye" name="eye"><translate>0 0 300</translate><instance_camera url="#cam"/></node>
 <node id="bulb" name="bulb"><translate>0 0 200</translate><instance_light url="#lamp"/></node>
 <node id="day" name="day"><instance_light url="#sun"/></node>
+<node id="haze" name="haze"><instance_light url="#glow"/></node>
 </visual_scene></library_visual_scenes>
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>
 )"));
@@ -246,6 +249,7 @@ TEST(GeneralGeometry, ColladaHierarchyCameraAndLight) {
     expect_vector(scene.distant[0].direction, {0, 1, 0});  // it shines along −z, now −y
     EXPECT_NEAR(scene.distant[0].irradiance, 5, rounding);
     EXPECT_TRUE(warned(scene, "no unit"));
+    EXPECT_TRUE(warned(scene, "'haze' is neither a point, a spot nor directional"));
 }
 
 // A chunk of a 3DS file: id, length with this head, contents.

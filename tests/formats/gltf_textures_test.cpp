@@ -187,5 +187,37 @@ TEST(GltfTextures, GlassAndGlossHaveTheirShares) {
     EXPECT_NEAR(m.specular[0], 0.5 / 9, 1e-12);  // ((2 − 1) / (2 + 1))² / 2
 }
 
+TEST(GltfTextures, WhatIsReadInPartIsTold) {
+    GltfBuilder gltf;
+    Json material{{"name", "leaf"}, {"alphaMode", "MASK"}};
+    material["pbrMetallicRoughness"] = {
+        {"baseColorFactor", {0.8, 0.6, 0.2, 1}}, {"metallicFactor", 1}, {"roughnessFactor", 0.1}};
+    Json& sheet = gltf.add_sheets({unit}, gltf.add_material(material));
+    sheet["targets"] = {{{"POSITION", sheet["attributes"]["POSITION"]}}};
+    Json line = sheet;
+    line["mode"] = 1;
+    gltf.json["meshes"][0]["primitives"].push_back(line);
+    gltf.json["skins"] = {{{"joints", {0}}}};
+    gltf.json["nodes"][0]["skin"] = 0;
+    gltf.json["cameras"] = {
+        {{"type", "orthographic"},
+         {"orthographic", {{"xmag", 1}, {"ymag", 1}, {"znear", 0.1}, {"zfar", 10}}}}};
+    gltf.json["nodes"][0]["camera"] = 0;
+    const Scene scene = parse_gltf("t.glb", gltf.bytes());
+    EXPECT_EQ(scene.polygons.size(), 2U);
+    EXPECT_TRUE(scene.cameras.empty());
+    // A metal reflects its base colour, diffusely.
+    EXPECT_NEAR(scene.materials[0].reflectance[0], 0.8, 1e-6);
+    EXPECT_NEAR(scene.materials[0].reflectance[2], 0.2, 1e-6);
+    for (const char* words : {"is cut out by its texture", "points or lines are left out",
+                              "skinned nodes", "morph targets", "without a perspective"})
+        EXPECT_EQ(std::count_if(scene.warnings.begin(), scene.warnings.end(),
+                                [&](const Problem& problem) {
+                                    return problem.what.find(words) != std::string::npos;
+                                }),
+                  1)
+            << words;
+}
+
 }  // namespace
 }  // namespace exitance
