@@ -18,14 +18,6 @@ namespace exitance::cli {
 
 namespace {
 
-double luminance(const Solution& solution, std::span<const double> columns) {
-    const Spectrum weight = luminance_weights(solution.bands.size());
-    double sum = 0;
-    for (std::size_t c = 0; c < columns.size(); ++c)
-        sum += columns[c] * weight[c % weight.size()] * solution.groups[c / weight.size()].weight;
-    return sum;
-}
-
 // At the middles of the reference's triangles, by area.
 double rms_difference(const Solution& solution, const Solution& reference) {
     const Surfaces ours(solution, Backs::black), theirs(reference, Backs::black);
@@ -37,8 +29,8 @@ double rms_difference(const Solution& solution, const Solution& reference) {
         if (!probe_surface(ours, middle, normal, here) ||
             !probe_surface(theirs, middle, normal, there))
             continue;
-        const double a = area(corners), light = luminance(reference, there);
-        const double difference = luminance(solution, here) - light;
+        const double a = area(corners), light = reference.luminance(there);
+        const double difference = solution.luminance(here) - light;
         square += a * difference * difference, sum += a * light, all += a;
     }
     return sum > 0 ? std::sqrt(square / all) / (sum / all) : 0.0;

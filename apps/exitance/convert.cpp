@@ -8,7 +8,6 @@
 #include "commands.h"
 #include "exitance/scene/formats/write_scene.h"
 #include "exitance/scene/read.h"
-#include "exitance/solution/file.h"
 #include "options_cli.h"
 #include "output_path.h"
 #include "summary.h"
@@ -38,9 +37,7 @@ class ConvertCommand {
     void run() {
         require_output(output_, input_, writable_endings());
         reading_.apply({});
-        if (is_solution(input_))
-            throw Error(Fault::wrong_use,
-                        "'" + input_.string() + "' is a solution already, expected a scene");
+        require_scene(input_);
         const Scene scene = read_scene(input_, read_options_);
         print_findings(scene);
         for (const std::string& lost : write_scene(scene, output_))

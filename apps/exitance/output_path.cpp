@@ -8,6 +8,7 @@
 #include "exitance/run/atomic_file.h"
 #include "exitance/run/error.h"
 #include "exitance/scene/formats/source_text.h"
+#include "exitance/solution/file.h"
 
 namespace exitance::cli {
 
@@ -25,6 +26,12 @@ void require_output(const std::filesystem::path& output, const std::filesystem::
         throw Error(Fault::wrong_use,
                     fmt::format("--output: '{}' would replace the input", output.string()));
     check_writable(output);
+}
+
+void require_scene(const std::filesystem::path& input) {
+    if (is_solution(input))
+        throw Error(Fault::wrong_use,
+                    "'" + input.string() + "' is a solution already, expected a scene");
 }
 
 }  // namespace exitance::cli

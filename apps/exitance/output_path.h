@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions to ask about an output before the long work that fills it.
+// Questions to ask about files before the long work that reads and fills them.
 #pragma once
 
 #include <filesystem>
@@ -13,5 +13,8 @@ namespace exitance::cli {
 /// Error(could_not_finish) if it could not be written.
 void require_output(const std::filesystem::path& output, const std::filesystem::path& input,
                     const std::vector<std::string>& endings);
+
+/// Throws Error(wrong_use) if `input` is a solution already.
+void require_scene(const std::filesystem::path& input);
 
 }  // namespace exitance::cli

@@ -60,9 +60,7 @@ class SolveCommand {
         else if (reporting_.log != "csv" && !compare_)
             throw Error(Fault::wrong_use, "--output is required");
         reading_.apply({});
-        if (is_solution(scene_))
-            throw Error(Fault::wrong_use,
-                        "'" + scene_.string() + "' is a solution already, expected a scene");
+        require_scene(scene_);
         const Scene scene = read_scene(scene_, read_options_);
         if (!reporting_.quiet) print_findings(scene);
         given_.apply(scene.settings);

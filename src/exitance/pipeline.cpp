@@ -29,20 +29,14 @@ Grouping grouping_of(const std::string& name) {
 
 // Length of the scene's surface, as it were: the side of a square of its area.
 double extent(const Scene& scene) {
-    double area = 0;
-    for (const Polygon& polygon : scene.polygons) area += scene.area(polygon);
-    return std::sqrt(area);
+    return std::sqrt(scene.area());
 }
 
 // The error asked for is spent on interpolation, whose part falls with the square of an element's
 // size: patches shrink with its root. At 2 % a patch is a twentieth of the extent.
 MeshOptions mesh_options(const SolveOptions& options, double extent) {
-    MeshOptions out;
-    out.patch_size = options.patch_size.value_or(
-        std::max(1e-9, 0.05 * extent * std::sqrt(options.error / 0.02)));
-    // Shorter contacts are left to the elements: light gets round what stands on them.
-    out.shortest_contact = 0.25 * out.patch_size;
-    return out;
+    return MeshOptions::of_patches(options.patch_size.value_or(
+        std::max(1e-9, 0.05 * extent * std::sqrt(options.error / 0.02))));
 }
 
 // Elements of one exitance each are wrong in proportion to their size.

@@ -75,23 +75,4 @@ inline std::vector<std::vector<double>> dense(const FormFactorMatrix& F) {
     return out;
 }
 
-/// Equal rectangles a × b facing each other at the distance c (Howell's catalogue C-11).
-inline double facing_rectangles(double a, double b, double c) {
-    const double X = a / c, Y = b / c, x = std::sqrt(1 + X * X), y = std::sqrt(1 + Y * Y);
-    return 2 / (std::numbers::pi * X * Y) *
-           (std::log(x * y / std::sqrt(1 + X * X + Y * Y)) + X * y * std::atan(X / y) +
-            Y * x * std::atan(Y / x) - X * std::atan(X) - Y * std::atan(Y));
-}
-
-/// From a rectangle l × w to one l × h at right angles along the common edge l (Howell's C-14).
-inline double rectangles_at_an_edge(double l, double w, double h) {
-    const double W = w / l, H = h / l, w2 = W * W, h2 = H * H, s = w2 + h2;
-    const double product = (1 + w2) * (1 + h2) / (1 + s) *
-                           std::pow(w2 * (1 + s) / ((1 + w2) * s), w2) *
-                           std::pow(h2 * (1 + s) / ((1 + h2) * s), h2);
-    return (W * std::atan(1 / W) + H * std::atan(1 / H) -
-            std::sqrt(s) * std::atan(1 / std::sqrt(s)) + 0.25 * std::log(product)) /
-           (std::numbers::pi * W);
-}
-
 }  // namespace exitance::enclosures

@@ -6,6 +6,7 @@
 #include "enclosures.h"
 #include "exitance/formfactor/closure.h"
 #include "exitance/run/error.h"
+#include "view_factor_cases.h"
 
 namespace exitance {
 namespace {
@@ -39,20 +40,19 @@ std::vector<Case> cases() {
         add_rectangle(e, corner2, u2, v2, 1);
         out.push_back({name, std::move(e), 0, 1, F, touching});
     };
-    using enclosures::facing_rectangles, enclosures::rectangles_at_an_edge;
-    pair("facing squares", facing_rectangles(1, 1, 1), false, {}, x, y, z, y, x);
-    pair("facing squares, far", facing_rectangles(1, 1, 10), false, {}, x, y, z * 10, y, x);
-    pair("facing rectangles", facing_rectangles(2, 1, 0.5), false, {}, x * 2, y, z * 0.5, y, x * 2);
-    pair("squares at an edge", rectangles_at_an_edge(1, 1, 1), true, {}, x, y, {}, y, z);
-    pair("rectangles at an edge", rectangles_at_an_edge(2, 1, 0.5), true, {}, x, y * 2, {}, y * 2,
-         z * 0.5);
+    using view_factors::parallel, view_factors::perpendicular;
+    pair("facing squares", parallel(1, 1, 1), false, {}, x, y, z, y, x);
+    pair("facing squares, far", parallel(1, 1, 10), false, {}, x, y, z * 10, y, x);
+    pair("facing rectangles", parallel(2, 1, 0.5), false, {}, x * 2, y, z * 0.5, y, x * 2);
+    pair("squares at an edge", perpendicular(1, 1, 1), true, {}, x, y, {}, y, z);
+    pair("rectangles at an edge", perpendicular(2, 1, 0.5), true, {}, x, y * 2, {}, y * 2, z * 0.5);
     {
         // Partly below the horizon of the first: what is above is the wall at an edge.
         Enclosure e;
         add_rectangle(e, {}, x, y, 0);
         add_rectangle(e, z * -1, y, z * 2, 1);
-        out.push_back({"a wall through the floor's plane", std::move(e), 0, 1,
-                       rectangles_at_an_edge(1, 1, 1), true});
+        out.push_back(
+            {"a wall through the floor's plane", std::move(e), 0, 1, perpendicular(1, 1, 1), true});
     }
     {
         // A convex body in a box: F(box → body) = A_body / A_box by symmetry.
@@ -141,7 +141,7 @@ TEST(FormFactorMethods, SeeBothSidesOfATwoSidedPolygon) {
     add_rectangle(e, z, y, x, 3);
     MethodOptions options;
     options.accuracy = 2e-3;
-    const double F = enclosures::facing_rectangles(1, 1, 1);
+    const double F = view_factors::parallel(1, 1, 1);
     for (const FormFactorMethod& method : form_factor_methods()) {
         const auto found = dense(compute(e, method.name, options));
         EXPECT_NEAR(found[0][3], F, 4 * options.accuracy) << method.name;
@@ -149,7 +149,7 @@ TEST(FormFactorMethods, SeeBothSidesOfATwoSidedPolygon) {
         EXPECT_EQ(found[0][2], 0) << method.name;
         EXPECT_EQ(found[2][3], 0) << method.name;
         // The plate hides all but a rim of the one behind.
-        EXPECT_LT(found[0][1], 0.3 * enclosures::facing_rectangles(1, 1, 2)) << method.name;
+        EXPECT_LT(found[0][1], 0.3 * view_factors::parallel(1, 1, 2)) << method.name;
     }
 }
 

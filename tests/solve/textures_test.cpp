@@ -34,16 +34,16 @@ Json coloured(const std::vector<double>& rgb) {
             {"pbrMetallicRoughness", {{"baseColorFactor", {rgb[0], rgb[1], rgb[2], 1}}}}};
 }
 
+std::vector<GltfBuilder::Sheet> inside_of_box(float x, float y, float z) {
+    return {{{0, 0, 0}, {0, 0, z}, {x, 0, 0}}, {{0, y, 0}, {x, 0, 0}, {0, 0, z}},
+            {{0, 0, 0}, {x, 0, 0}, {0, y, 0}}, {{0, 0, z}, {0, y, 0}, {x, 0, 0}},
+            {{0, 0, 0}, {0, y, 0}, {0, 0, z}}, {{x, 0, 0}, {0, 0, z}, {0, y, 0}}};
+}
+
 /// A room of 4 × 3 × 4 m with a lamp under the ceiling; the rug is still missing.
 GltfBuilder room() {
     GltfBuilder gltf;
-    gltf.add_sheets({{{0, 0, 0}, {0, 0, 4}, {4, 0, 0}},
-                     {{0, 3, 0}, {4, 0, 0}, {0, 0, 4}},
-                     {{0, 0, 0}, {4, 0, 0}, {0, 3, 0}},
-                     {{0, 0, 4}, {0, 3, 0}, {4, 0, 0}},
-                     {{0, 0, 0}, {0, 3, 0}, {0, 0, 4}},
-                     {{4, 0, 0}, {0, 0, 4}, {0, 3, 0}}},
-                    gltf.add_material(coloured({0.6, 0.6, 0.6})));
+    gltf.add_sheets(inside_of_box(4, 3, 4), gltf.add_material(coloured({0.6, 0.6, 0.6})));
     Json lamp = coloured({0, 0, 0});
     lamp["emissiveFactor"] = {1, 1, 1};
     gltf.add_sheets({{{1.5, 2.9f, 1.5}, {1, 0, 0}, {0, 0, 1}}}, gltf.add_material(lamp));
@@ -156,13 +156,7 @@ TEST_F(ChequeredRug, KeepsItsPatternInTheFile) {
 // A lamp whose left half shines, twice as bright as the mean: as much light as from that half.
 TEST(EmissiveTexture, SendsTheFluxOfItsPattern) {
     GltfBuilder gltf;
-    gltf.add_sheets({{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}},
-                     {{0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
-                     {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                     {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}},
-                     {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-                     {{1, 0, 0}, {0, 0, 1}, {0, 1, 0}}},
-                    gltf.add_material(coloured({0, 0, 0})));
+    gltf.add_sheets(inside_of_box(1, 1, 1), gltf.add_material(coloured({0, 0, 0})));
     Json lamp = coloured({0, 0, 0});
     lamp["emissiveFactor"] = {1, 1, 1};
     lamp["emissiveTexture"]["index"] =

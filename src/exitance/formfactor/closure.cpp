@@ -70,17 +70,6 @@ FormFactorMatrix rows_scaled(const FormFactorMatrix& F) {
     return out;
 }
 
-// y = S x, S symmetric with its lower triangle kept.
-void multiply(const ExchangeAreas& S, const std::vector<double>& x, std::vector<double>& y) {
-    std::fill(y.begin(), y.end(), 0.0);
-    for (std::size_t i = 0; i < S.rows(); ++i)
-        S.visit_row(i, [&](std::size_t j, float area) {
-            const double s = static_cast<double>(area);
-            y[i] += s * x[j];
-            if (j != i) y[j] += s * x[i];
-        });
-}
-
 // S_ij (1 + λ_i + λ_j), never below zero; true if something had to be held there.
 bool correct(ExchangeAreas& S, const std::vector<double>& lambda) {
     bool held = false;
@@ -103,8 +92,8 @@ ExchangeAreas closed(ExchangeAreas S, const std::vector<double>& A) {
     const std::size_t n = S.rows();
     // Once more where entries were held at zero, and against the rounding of floats.
     for (int round = 0; round < most_rounds; ++round) {
-        std::vector<double> sums(n), right(n), diagonal(n), lambda(n);
-        multiply(S, std::vector<double>(n, 1.0), sums);
+        const std::vector<double> sums = S.times(std::vector<double>(n, 1.0));
+        std::vector<double> right(n), diagonal(n), lambda(n);
         double worst = 0;
         for (std::size_t i = 0; i < n; ++i) {
             right[i] = A[i] - sums[i];
@@ -113,9 +102,10 @@ ExchangeAreas closed(ExchangeAreas S, const std::vector<double>& A) {
         }
         if (worst < 3e-7) break;
         conjugate_gradients(
-            [&](const std::vector<double>& x, std::vector<double>& y) {
-                multiply(S, x, y);
+            [&](const std::vector<double>& x) {
+                std::vector<double> y = S.times(x);
                 for (std::size_t i = 0; i < n; ++i) y[i] += sums[i] * x[i];
+                return y;
             },
             diagonal, right, lambda, 1e-9, 1000);
         if (!correct(S, lambda) && round >= 2) break;

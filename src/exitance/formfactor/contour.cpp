@@ -8,6 +8,7 @@
 #include "exitance/formfactor/facing_parts.h"
 #include "exitance/formfactor/pair_visibility.h"
 #include "exitance/formfactor/pairs_of_facets.h"
+#include "exitance/math/quadrature.h"
 #include "exitance/run/random.h"
 
 namespace exitance {
@@ -16,12 +17,6 @@ namespace {
 
 constexpr std::size_t most_segments = 32;
 constexpr double most_parts = 1024;
-
-// Gauss & Legendre's rule of four points on [0, 1].
-constexpr std::array<double, 4> abscissa{0.06943184420297371, 0.33000947820757187,
-                                         0.66999052179242813, 0.93056815579702629};
-constexpr std::array<double, 4> weight{0.17392742256872693, 0.32607257743127307,
-                                       0.32607257743127307, 0.17392742256872693};
 
 // ∫∫ ln r ds dt over two edges, s and t from 0 to 1.
 double mean_logarithm(const Vec3& a, const Vec3& along_a, std::size_t segments_a, const Vec3& b,
@@ -33,17 +28,18 @@ double mean_logarithm(const Vec3& a, const Vec3& along_a, std::size_t segments_a
     // The same edge on both: ∫∫ ln(L |s − t|) = ln L − 3/2.
     if ((same(a, b) && same(a_end, b_end)) || (same(a, b_end) && same(a_end, b)))
         return 0.5 * std::log(dot(along_a, along_a)) - 1.5;
+    const auto& rule = gauss_legendre<4>();
     const double step_a = 1.0 / static_cast<double>(segments_a),
                  step_b = 1.0 / static_cast<double>(segments_b);
     double sum = 0;
     for (std::size_t i = 0; i < 4 * segments_a; ++i) {
-        const Vec3 x = a + along_a * ((static_cast<double>(i / 4) + abscissa[i % 4]) * step_a);
+        const Vec3 x = a + along_a * ((static_cast<double>(i / 4) + rule.at[i % 4]) * step_a);
         double inner = 0;
         for (std::size_t j = 0; j < 4 * segments_b; ++j) {
-            const Vec3 y = b + along_b * ((static_cast<double>(j / 4) + abscissa[j % 4]) * step_b);
-            inner += weight[j % 4] * std::log(std::max(dot(x - y, x - y), close));
+            const Vec3 y = b + along_b * ((static_cast<double>(j / 4) + rule.at[j % 4]) * step_b);
+            inner += rule.weight[j % 4] * std::log(std::max(dot(x - y, x - y), close));
         }
-        sum += weight[i % 4] * inner;
+        sum += rule.weight[i % 4] * inner;
     }
     return 0.5 * sum * step_a * step_b;
 }

@@ -43,6 +43,17 @@ double ExchangeAreas::at(std::size_t i, std::size_t j) const {
     return sparse.areas[static_cast<std::size_t>(found - sparse.columns.begin())];
 }
 
+std::vector<double> ExchangeAreas::times(const std::vector<double>& x) const {
+    std::vector<double> y(x.size());
+    for (std::size_t i = 0; i < rows(); ++i)
+        visit_row(i, [&](std::size_t j, float area) {
+            const double s = static_cast<double>(area);
+            y[i] += s * x[j];
+            if (j != i) y[j] += s * x[i];
+        });
+    return y;
+}
+
 std::size_t ExchangeAreas::bytes() const {
     std::size_t sum = rows_.capacity() * sizeof(rows_[0]);
     for (const auto& row : rows_) {

@@ -35,6 +35,9 @@ class ExchangeAreas {
             visit(std::size_t{sparse.columns[k]}, sparse.areas[k]);
     }
 
+    /// Σ_j S_ij x_j, of the whole symmetric matrix.
+    std::vector<double> times(const std::vector<double>& x) const;
+
     std::size_t bytes() const;
 
   private:

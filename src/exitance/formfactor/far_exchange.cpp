@@ -17,9 +17,9 @@ SampledFacet::SampledFacet(std::span<const Vec3> outline_)
         corners[c] = outline_[std::min(c, outline_.size() - 1)];
         radius = std::max(radius, length(corners[c] - centre));
     }
-    const Vec3 twice = vector_area(outline_);
-    area = length(twice);
-    plane.normal = normalized(twice);
+    const Vec3 facing = vector_area(outline_);
+    area = length(facing);
+    plane.normal = normalized(facing);
     plane.offset = dot(plane.normal, centre);
     const auto& rule = gauss_legendre<2>();
     double sum = 0;

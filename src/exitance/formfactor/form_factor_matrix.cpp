@@ -31,6 +31,14 @@ void visit_block(const ExchangeAreas& S, const std::vector<double>& areas, std::
 
 }  // namespace
 
+void FormFactorMatrix::set_row(std::size_t i, std::span<const double> factors) {
+    std::vector<Entry> entries;
+    for (std::size_t j = 0; j < factors.size(); ++j)
+        if (factors[j] > 0)
+            entries.push_back({static_cast<std::uint32_t>(j), static_cast<float>(factors[j])});
+    set_row(i, std::move(entries));
+}
+
 void FormFactorMatrix::for_rows(
     const std::function<void(std::size_t, std::span<const Entry>)>& visit) const {
     if (!exchange_) {

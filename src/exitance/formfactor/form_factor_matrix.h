@@ -36,6 +36,8 @@ class FormFactorMatrix {
     /// Entries in ascending order of their columns. Threads may set different rows at once. Not for
     /// a matrix that is kept as exchange areas.
     void set_row(std::size_t i, std::vector<Entry> entries) { rows_[i] = std::move(entries); }
+    /// The same from all of the row's factors; those above 0 are kept.
+    void set_row(std::size_t i, std::span<const double> factors);
 
     /// Calls visit(i, entries of row i in ascending order) for every row in order.
     void for_rows(const std::function<void(std::size_t, std::span<const Entry>)>& visit) const;

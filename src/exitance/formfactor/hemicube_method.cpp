@@ -96,11 +96,7 @@ FormFactorMatrix hemicube_form_factors(const MethodCall& call) {
                 ++call.counters.unreached;
                 break;
             }
-            std::vector<FormFactorMatrix::Entry> entries;
-            for (std::size_t j = 0; j < row.size(); ++j)
-                if (row[j] > 0)
-                    entries.push_back({static_cast<std::uint32_t>(j), static_cast<float>(row[j])});
-            F.set_row(i, std::move(entries));
+            F.set_row(i, row);
             done.add(1);
         }
     });

@@ -70,19 +70,16 @@ std::vector<double> surface_areas(const Enclosure& enclosure) {
 }
 
 void WorkDone::add(double work) {
-    while (busy_.test_and_set(std::memory_order_acquire)) {
-    }
+    const std::lock_guard lock(telling_);
     done_ += work;
-    if (call_.observe) {
-        Progress progress;
-        progress.phase = "factors";
-        progress.even = true;
-        progress.seconds = clock_.seconds();
-        progress.fraction_left = 1 - done_ / all_;
-        progress.rays = call_.counters.rays;
-        call_.observe(progress);
-    }
-    busy_.clear(std::memory_order_release);
+    if (!call_.observe) return;
+    Progress progress;
+    progress.phase = "factors";
+    progress.even = true;
+    progress.seconds = clock_.seconds();
+    progress.fraction_left = 1 - done_ / all_;
+    progress.rays = call_.counters.rays;
+    call_.observe(progress);
 }
 
 }  // namespace exitance

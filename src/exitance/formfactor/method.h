@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -70,7 +71,7 @@ class WorkDone {
     const MethodCall& call_;
     double all_;
     double done_ = 0;
-    std::atomic_flag busy_{};
+    std::mutex telling_{};
     Stopwatch clock_{};
 };
 

@@ -19,6 +19,8 @@ namespace exitance {
 struct alignas(64) Viewpoints {
     static constexpr std::size_t capacity = 16;
     std::array<float, capacity> x, y, z;
+
+    void set(std::size_t k, const Vec3f& p) { x[k] = p.x, y[k] = p.y, z[k] = p.z; }
 };
 
 /// Form factors from each point to the target: with nothing between, and past the obstacles.

@@ -262,7 +262,6 @@ void add(PairwiseCounters& to, const PairwiseCounters& more) {
     to.visible += more.visible;
     to.partial += more.partial;
     to.viewpoints += more.viewpoints;
-    to.rays += more.rays;
 }
 
 }  // namespace

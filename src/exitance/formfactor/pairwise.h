@@ -15,7 +15,6 @@ namespace exitance {
 struct PairwiseOptions {
     /// Aimed at: the mean over rows of Σ_j |error of F_ij| [1e-6 … 0.1].
     double accuracy = 1e-4;
-    std::uint64_t seed = 0;
 };
 
 struct PairwiseCounters {
@@ -25,7 +24,6 @@ struct PairwiseCounters {
     std::uint64_t visible = 0;    ///< after a look at the blockers
     std::uint64_t partial = 0;
     std::uint64_t viewpoints = 0;
-    std::uint64_t rays = 0;
 };
 
 /// Entries that together are less than a tenth of the accuracy of their row are left out where that

@@ -12,13 +12,9 @@
 namespace exitance {
 
 FormFactorMatrix pairwise_form_factors(const MethodCall& call) {
-    PairwiseOptions options;
-    options.accuracy = call.options.accuracy;
-    options.seed = call.options.seed;
     PairwiseCounters counters;
-    ExchangeAreas S =
-        pairwise_exchange_areas(call.enclosure, options, call.observe, call.cancel, &counters);
-    call.counters.rays += counters.rays;
+    ExchangeAreas S = pairwise_exchange_areas(call.enclosure, {call.options.accuracy}, call.observe,
+                                              call.cancel, &counters);
     call.counters.evaluations += counters.pairs;
     return {surface_areas(call.enclosure), std::move(S)};
 }

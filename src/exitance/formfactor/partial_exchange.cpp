@@ -46,14 +46,8 @@ void PartialExchanger::look(Cell& cell) {
     std::array<double, 16> weight;
     for (std::size_t k = 0; k < 16; ++k) {
         const double s = cell.s + cell.size * nodes[k % 4], t = cell.t + cell.size * nodes[k / 4];
-        const Vec3 low = root.corners[0] + (root.corners[1] - root.corners[0]) * s;
-        const Vec3 high = root.corners[3] + (root.corners[2] - root.corners[3]) * s;
-        const Vec3f p = target_.local(low + (high - low) * t);
-        points.x[k] = p.x;
-        points.y[k] = p.y;
-        points.z[k] = p.z;
-        weight[k] = (root.jacobian[0] + root.jacobian[1] * s + root.jacobian[2] * t) * cell.size *
-                    cell.size / 16;
+        points.set(k, target_.local(root.at(s, t)));
+        weight[k] = root.density(s, t) * cell.size * cell.size / 16;
     }
     ViewFactors factors;
     view(target_, points, factors);
@@ -113,6 +107,12 @@ PartialExchanger::Root::Root(const Vec3& a, const Vec3& b, const Vec3& c, const 
     jacobian = {at00, dot(cross(ab, bc), normal) - at00, dot(cross(dc, ad), normal) - at00};
 }
 
+Vec3 PartialExchanger::Root::at(double s, double t) const {
+    const Vec3 low = corners[0] + (corners[1] - corners[0]) * s;
+    const Vec3 high = corners[3] + (corners[2] - corners[3]) * s;
+    return low + (high - low) * t;
+}
+
 double PartialExchanger::free(std::span<const Vec3> from, const Plane& from_plane,
                               std::span<const Vec3> to, const Plane& to_plane) {
     const Root root(from[0], from[1], from[2], from[from.size() - 1], from_plane.normal);
@@ -124,14 +124,8 @@ double PartialExchanger::free(std::span<const Vec3> from, const Plane& from_plan
     std::array<double, 16> weight;
     for (std::size_t k = 0; k < 16; ++k) {
         const double s = rule.at[k % 4], t = rule.at[k / 4];
-        const Vec3 low = root.corners[0] + (root.corners[1] - root.corners[0]) * s;
-        const Vec3 high = root.corners[3] + (root.corners[2] - root.corners[3]) * s;
-        const Vec3f p = target_.local(low + (high - low) * t);
-        points.x[k] = p.x;
-        points.y[k] = p.y;
-        points.z[k] = p.z;
-        weight[k] = (root.jacobian[0] + root.jacobian[1] * s + root.jacobian[2] * t) *
-                    rule.weight[k % 4] * rule.weight[k / 4];
+        points.set(k, target_.local(root.at(s, t)));
+        weight[k] = root.density(s, t) * rule.weight[k % 4] * rule.weight[k / 4];
     }
     ViewFactors factors;
     view(target_, points, factors);

@@ -39,6 +39,11 @@ class PartialExchanger {
         std::array<double, 3> jacobian;  ///< 1, s, t
 
         Root(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& normal);
+        /// The image of (s, t), and how much larger areas are there.
+        Vec3 at(double s, double t) const;
+        double density(double s, double t) const {
+            return jacobian[0] + jacobian[1] * s + jacobian[2] * t;
+        }
     };
     /// What is seen and what is hidden, or differences of both.
     struct Parts {

@@ -178,16 +178,11 @@ class EnclosureBuilder {
 
     double patch_size() const {
         if (options_.patch_size) return *options_.patch_size;
-        double area = 0;
-        for (const Polygon& polygon : scene_.polygons) area += scene_.area(polygon);
-        return std::max(1e-9, 0.05 * std::sqrt(area));
+        return std::max(1e-9, 0.05 * std::sqrt(scene_.area()));
     }
 
     void add_patches() {
-        MeshOptions division;
-        division.patch_size = patch_size();
-        division.shortest_contact = 0.25 * division.patch_size;
-        Mesh mesh(scene_, division);
+        Mesh mesh(scene_, MeshOptions::of_patches(patch_size()));
         if (by_ == "element") divide(mesh);
         for (const Patch& patch : mesh.patches()) {
             const Face& face = mesh[patch.face];

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "exitance/math/disjoint_sets.h"
 #include "exitance/math/polygon.h"
 #include "exitance/mesh/cut.h"
 #include "exitance/mesh/mesh.h"
@@ -27,22 +28,6 @@ constexpr double contact_gap = 100;
 std::uint64_t bits_of(std::uint32_t high, std::uint32_t low) {
     return std::uint64_t{high} << 32 | low;
 }
-
-// Disjoint sets with path halving.
-struct Sets {
-    std::vector<std::uint32_t> parent;
-
-    explicit Sets(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    }
-    // The smaller number becomes the root, so the outcome does not depend on the order of joins.
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a), b = find(b);
-        parent[std::max(a, b)] = std::min(a, b);
-    }
-};
 
 // Two factors of `patches` whose ratio is nearest to width : height.
 std::array<std::uint32_t, 2> divide_exactly(std::uint32_t patches, double width, double height) {
@@ -263,7 +248,7 @@ class MeshBuilder {
                     return face.normals[i] == Vec3{} ? face.normal : face.normals[i];
             return face.normal;
         };
-        Sets sets(mesh_.faces_.size());
+        DisjointSets sets(mesh_.faces_.size());
         for (std::size_t e = 0; e < mesh_.edges_.size(); ++e) {
             for (const std::uint32_t f : around[e]) {
                 for (const std::uint32_t g : around[e]) {

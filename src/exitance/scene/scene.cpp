@@ -66,6 +66,12 @@ double Scene::area(const Polygon& polygon) const {
     return exitance::area({c.data(), polygon.size()});
 }
 
+double Scene::area() const {
+    double sum = 0;
+    for (const Polygon& polygon : polygons) sum += area(polygon);
+    return sum;
+}
+
 Vec3 Scene::normal(const Polygon& polygon) const {
     const auto c = corners(polygon);
     return unit_normal({c.data(), polygon.size()});

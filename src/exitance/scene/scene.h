@@ -150,6 +150,7 @@ struct Scene {
     /// Corners of a polygon; only the first `size()` are meaningful.
     std::array<Vec3, 4> corners(const Polygon& polygon) const;
     double area(const Polygon& polygon) const;
+    double area() const;  ///< of all polygons
     Vec3 normal(const Polygon& polygon) const;
     const Material& material(const Polygon& polygon) const {
         return materials[surfaces[polygon.surface].material];

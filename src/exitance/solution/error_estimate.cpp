@@ -111,14 +111,7 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
     options.seed = hash_bits(seed, 2);
     gather(surfaces, held.points, second, options);
 
-    const Spectrum band_weight = luminance_weights(solution.bands.size());
-    const auto level = [&](const double* row) {
-        double sum = 0;
-        for (std::size_t c = 0; c < columns; ++c)
-            sum += solution.groups[c / solution.bands.size()].weight *
-                   band_weight[c % solution.bands.size()] * row[c];
-        return sum;
-    };
+    const auto level = [&](const double* row) { return solution.luminance({row, columns}); };
     double mean = 0, bias = 0;
     std::vector<double> squares(n);
     for (std::size_t i = 0; i < n; ++i) {

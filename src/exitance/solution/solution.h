@@ -98,6 +98,8 @@ struct Solution {
     std::string scene_digest;                    ///< hexadecimal
 
     std::size_t columns() const { return groups.size() * bands.size(); }
+    /// Of values per column: all groups by their weights, all bands as the eye weighs them.
+    double luminance(std::span<const double> values) const;
 
     /// Exitance B = E + ρ H, of a pattern's means, in one column of vertex `vertex` seen as part of
     /// `part`.

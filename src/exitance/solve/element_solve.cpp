@@ -181,8 +181,7 @@ class ElementSolve {
             enclosure.surfaces.push_back({"", facet.area, 1.0});
         }
         try {
-            return pairwise_exchange_areas(enclosure, {pair_accuracy(), options_.column.seed}, {},
-                                           stop_.cancel);
+            return pairwise_exchange_areas(enclosure, {pair_accuracy()}, {}, stop_.cancel);
         } catch (const Error&) {
             if (!interrupted()) throw;
             return ExchangeAreas(rows_.size());

@@ -7,6 +7,8 @@
 // no care: their root is 0, so y = 0 and R = √(ρ/A) y = 0 without a division by ρ.
 #pragma once
 
+#include <span>
+
 #include "exitance/solve/element_solver.h"
 
 namespace exitance {
@@ -21,6 +23,8 @@ class Krylov final : public ElementSolver {
 
   private:
     double sweep() override;
+    /// y becomes (I − √(ρ A) F √(ρ/A)) y.
+    void multiply(std::span<double> y);
 
     std::vector<double> root_in_;   ///< √(ρ/A), rows × columns
     std::vector<double> root_out_;  ///< √(ρ A)

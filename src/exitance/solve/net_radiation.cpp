@@ -31,7 +31,7 @@ class Exchange {
           sky_(blackbody(surroundings)),
           open_(A_.size()),
           J_(A_.size()) {
-        const std::vector<double> seen = received(std::vector<double>(A_.size(), 1.0));
+        const std::vector<double> seen = S_.times(std::vector<double>(A_.size(), 1.0));
         for (std::size_t i = 0; i < A_.size(); ++i) {
             const double share = 1 - seen[i] / A_[i];
             open_[i] = share > closed_share ? share * A_[i] : 0;
@@ -42,7 +42,7 @@ class Exchange {
     NetRadiation solve() {
         solve_radiosities();
         NetRadiation out;
-        const std::vector<double> arrived = received(J_);
+        const std::vector<double> arrived = S_.times(J_);
         for (std::size_t i = 0; i < A_.size(); ++i) {
             RadiatingSurface s;
             s.radiosity = J_[i];
@@ -59,17 +59,6 @@ class Exchange {
     }
 
   private:
-    // Σ_j S_ij x_j.
-    std::vector<double> received(const std::vector<double>& x) const {
-        std::vector<double> y(x.size());
-        for (std::size_t i = 0; i < x.size(); ++i)
-            S_.visit_row(i, [&](std::size_t j, float area) {
-                y[i] += static_cast<double>(area) * x[j];
-                if (j != i) y[j] += static_cast<double>(area) * x[i];
-            });
-        return y;
-    }
-
     void check() const {
         bool level = std::any_of(open_.begin(), open_.end(), [](double a) { return a > 0; });
         for (std::size_t i = 0; i < A_.size(); ++i) {
@@ -112,7 +101,7 @@ class Exchange {
                                           : A_[i] * *s.heat_flux);
             diagonal[i] = std::max(full[i] - S_.at(i, i), 1e-6 * full[i]);
         }
-        const std::vector<double> from_black = received(J_);
+        const std::vector<double> from_black = S_.times(J_);
         for (std::size_t i = 0; i < n; ++i) {
             if (!known[i])
                 b[i] += from_black[i];
@@ -120,10 +109,11 @@ class Exchange {
                 diagonal[i] = 1;
         }
         const double left = conjugate_gradients(
-            [&](const std::vector<double>& in, std::vector<double>& out) {
-                out = received(in);
+            [&](const std::vector<double>& in) {
+                std::vector<double> out = S_.times(in);
                 for (std::size_t i = 0; i < n; ++i)
                     out[i] = known[i] ? 0 : full[i] * in[i] - out[i];
+                return out;
             },
             diagonal, b, x, 1e-12, 20 * n + 100);
         if (!(left <= 1e-6))

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "exitance/math/box_tree.h"
+#include "exitance/math/disjoint_sets.h"
 #include "exitance/math/polygon.h"
 #include "exitance/mesh/weld.h"
 #include "exitance/visibility/blocker.h"
@@ -19,27 +20,6 @@ using Loop = std::vector<std::uint32_t>;  // welded corners in order
 constexpr std::uint64_t directed(std::uint32_t from, std::uint32_t to) {
     return std::uint64_t{from} << 32 | to;
 }
-
-struct Sets {
-    std::vector<std::uint32_t> parent;
-
-    explicit Sets(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-    std::uint32_t of(std::uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = of(a);
-        b = of(b);
-        parent[std::max(a, b)] = std::min(a, b);
-    }
-    std::vector<std::vector<std::uint32_t>> members() {
-        std::vector<std::vector<std::uint32_t>> found(parent.size());
-        for (std::uint32_t i = 0; i < parent.size(); ++i) found[of(i)].push_back(i);
-        std::erase_if(found, [](const auto& m) { return m.empty(); });
-        return found;
-    }
-};
 
 class Finder {
   public:
@@ -79,7 +59,7 @@ class Finder {
                 auto& owner = owners_[edge(loops_[i], k)];
                 owner = owner.count == 0 ? Owner{i, 1} : Owner{owner.polygon, 2};
             }
-        Sets bodies(loops_.size()), faces(loops_.size());
+        DisjointSets bodies(loops_.size()), faces(loops_.size());
         for (std::uint32_t i = 0; i < loops_.size(); ++i)
             for (std::size_t k = 0; k < loops_[i].size(); ++k) {
                 const auto other = neighbour(loops_[i], k);
@@ -88,7 +68,7 @@ class Finder {
                 if (coplanar(i, *other)) faces.join(i, *other);
             }
         face_of_.resize(loops_.size());
-        for (std::uint32_t i = 0; i < loops_.size(); ++i) face_of_[i] = faces.of(i);
+        for (std::uint32_t i = 0; i < loops_.size(); ++i) face_of_[i] = faces.find(i);
 
         std::vector<Box> boxes;
         for (const Loop& loop : loops_) boxes.push_back(box(loop));

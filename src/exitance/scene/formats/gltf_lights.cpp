@@ -47,6 +47,12 @@ Photometry cone_photometry(double inner, double outer) {
     return out;
 }
 
+[[noreturn]] void refuse_direction(const Place& place, const std::string& name) {
+    throw Error(place, fmt::format("the node of the light '{}' has no direction, expected a scale "
+                                   "that is not zero",
+                                   name));
+}
+
 /// A colour as its proportions, of luminance 1, and its luminance.
 struct Tint {
     Spectrum colour{1, 1, 1};
@@ -113,10 +119,7 @@ void GltfLights::add_directional(const JsonNode& light, const std::string& name,
     out.name = name;
     out.place = json_.place(light.path);
     out.direction = normalized(world.z);
-    if (!is_finite(out.direction) || out.direction == Vec3{})
-        throw Error(out.place, fmt::format("the node of the light '{}' has no direction, expected "
-                                           "a scale that is not zero",
-                                           name));
+    if (!is_finite(out.direction) || out.direction == Vec3{}) refuse_direction(out.place, name);
     const Tint tint = tint_of(light.member("color"));
     out.irradiance = number(light, "intensity", 1) * tint.luminance;
     if (!(out.irradiance > 0)) return;
@@ -160,9 +163,7 @@ void GltfLights::place(Luminaire luminaire, const JsonNode& colour, double level
     const Vec3 c0 = normalized(world.x - nadir * dot(world.x, nadir));
     if (!is_finite(world.origin) || !is_finite(nadir) || !is_finite(c0) ||
         std::abs(length(nadir) - 1) > 1e-6 || std::abs(length(c0) - 1) > 1e-6)
-        throw Error(luminaire.place, fmt::format("the node of the light '{}' has no direction, "
-                                                 "expected a scale that is not zero",
-                                                 luminaire.name));
+        refuse_direction(luminaire.place, luminaire.name);
     luminaire.nadir = nadir;
     luminaire.c0 = c0;
     if (world.determinant() < 0)

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "exitance/scene/formats/include_files.h"
 #include "exitance/scene/formats/source_text.h"
 
 namespace exitance {
@@ -71,12 +72,7 @@ std::optional<fs::path> file_of_uri(const std::string& uri, const fs::path& fold
 
 bool is_file_below(const fs::path& path, const fs::path& folder) {
     std::error_code failure;
-    if (!fs::is_regular_file(path, failure)) return false;
-    const fs::path file = fs::canonical(path, failure);
-    if (failure) return false;
-    const fs::path root = fs::canonical(folder.empty() ? fs::path(".") : folder, failure);
-    if (failure) return false;
-    return std::mismatch(root.begin(), root.end(), file.begin(), file.end()).first == root.end();
+    return fs::is_regular_file(path, failure) && leads_into(path, folder);
 }
 
 GltfResources::GltfResources(const fs::path& path, const tinygltf::Model& model,

@@ -109,38 +109,28 @@ template <class T>
 constexpr bool has_no_members =
     std::is_arithmetic_v<T> || std::is_same_v<T, Vec3> || std::is_same_v<T, std::string>;
 
+template <class V, class... T>
+void visit_all(V& visit, T&... values) {
+    (visit(values), ...);
+}
+
 template <class V, class T>
 requires std::same_as<std::remove_const_t<T>, Transform>
 void members(V& visit, T& t) {
-    visit(t.x);
-    visit(t.y);
-    visit(t.z);
-    visit(t.origin);
+    visit_all(visit, t.x, t.y, t.z, t.origin);
 }
 
 template <class V, class T>
 requires std::same_as<std::remove_const_t<T>, ImportedMaterial>
 void members(V& visit, T& m) {
-    visit(m.name);
-    visit(m.diffuse);
-    visit(m.emissive);
-    visit(m.opacity);
-    visit(m.refractive_index);
-    visit(m.two_sided);
-    visit(m.diffuse_known);
-    visit(m.diffuse_texture);
-    visit(m.emissive_texture);
+    visit_all(visit, m.name, m.diffuse, m.emissive, m.opacity, m.refractive_index, m.two_sided,
+              m.diffuse_known, m.diffuse_texture, m.emissive_texture);
 }
 
 template <class V, class T>
 requires std::same_as<std::remove_const_t<T>, ImportedMesh>
 void members(V& visit, T& m) {
-    visit(m.name);
-    visit(m.material);
-    visit(m.positions);
-    visit(m.normals);
-    visit(m.face_corners);
-    visit(m.corners);
+    visit_all(visit, m.name, m.material, m.positions, m.normals, m.face_corners, m.corners);
 }
 
 template <class V, class T>
@@ -155,42 +145,20 @@ void members(V& visit, T& n) {
 template <class V, class T>
 requires std::same_as<std::remove_const_t<T>, ImportedCamera>
 void members(V& visit, T& c) {
-    visit(c.name);
-    visit(c.position);
-    visit(c.view);
-    visit(c.up);
-    visit(c.fov_x);
-    visit(c.aspect);
-    visit(c.near);
-    visit(c.far);
+    visit_all(visit, c.name, c.position, c.view, c.up, c.fov_x, c.aspect, c.near, c.far);
 }
 
 template <class V, class T>
 requires std::same_as<std::remove_const_t<T>, ImportedLight>
 void members(V& visit, T& l) {
-    visit(l.name);
-    visit(l.kind);
-    visit(l.position);
-    visit(l.direction);
-    visit(l.colour);
-    visit(l.inner_cone);
-    visit(l.outer_cone);
+    visit_all(visit, l.name, l.kind, l.position, l.direction, l.colour, l.inner_cone, l.outer_cone);
 }
 
 template <class V, class T>
 requires std::same_as<std::remove_const_t<T>, ImportedScene>
 void members(V& visit, T& s) {
-    visit(s.nodes);
-    visit(s.meshes);
-    visit(s.materials);
-    visit(s.cameras);
-    visit(s.lights);
-    visit(s.warnings);
-    visit(s.missing);
-    visit(s.refused);
-    visit(s.unit);
-    visit(s.up_axis);
-    visit(s.up_sign);
+    visit_all(visit, s.nodes, s.meshes, s.materials, s.cameras, s.lights, s.warnings, s.missing,
+              s.refused, s.unit, s.up_axis, s.up_sign);
 }
 
 template <class T>

@@ -5,6 +5,22 @@
 
 namespace exitance {
 
+namespace {
+
+// What sun and sky have in common.
+std::vector<ProjectKey> with_colour_and_level(std::vector<ProjectKey> keys) {
+    using enum ProjectKey::Kind;
+    keys.insert(keys.end(), {{"color", spectrum, "only its proportions count"},
+                             {"color_temperature", number, "1000 to 25000 K"},
+                             {"multiplier", number, "factor"},
+                             {"dimming", number, "0 to 1"},
+                             {"maintenance", number, "0 to 1"},
+                             {"group", text, "light group; default: the name"}});
+    return keys;
+}
+
+}  // namespace
+
 const std::vector<ProjectTable>& project_tables() {
     using enum ProjectKey::Kind;
     static const std::vector<ProjectTable> tables{
@@ -89,45 +105,30 @@ const std::vector<ProjectTable>& project_tables() {
           {"time", time, "date and time of day", true},
           {"time_zone", number, "hours ahead of universal time"},
           {"north", number, "turns north from −z, degrees, counter-clockwise seen from above"}}},
-        {"sky",
-         false,
-         "Light of the sky",
-         {{"model",
-           text,
-           "distribution of the luminance",
-           true,
-           {"overcast", "clear", "cie", "perez", "uniform", "map"}},
-          {"type", count, "of the CIE standard general skies, 1 to 15"},
-          {"zenith_luminance", number, "cd/m² or W/(m² sr)"},
-          {"horizontal", number, "illuminance of the open ground"},
-          {"direct_normal", number, "W/m², of perez"},
-          {"diffuse_horizontal", number, "W/m², of perez"},
-          {"ground_reflectance", number, "of the plane below the horizon, 0 to 1"},
-          {"file", text, "equirectangular .hdr or .exr"},
-          {"rotation", number, "of the map, degrees"},
-          {"scale", number, "of the map"},
-          {"name", text, "default: sky"},
-          {"color", spectrum, "only its proportions count"},
-          {"color_temperature", number, "1000 to 25000 K"},
-          {"multiplier", number, "factor"},
-          {"dimming", number, "0 to 1"},
-          {"maintenance", number, "0 to 1"},
-          {"group", text, "light group; default: the name"}}},
-        {"sun",
-         false,
-         "Light of the sun",
-         {{"altitude", number, "degrees above the horizon"},
-          {"azimuth", number, "degrees from north over east"},
-          {"direction", vector, "towards it"},
-          {"normal", number, "illuminance across its rays"},
-          {"diameter", number, "degrees"},
-          {"name", text, "default: sun"},
-          {"color", spectrum, "only its proportions count"},
-          {"color_temperature", number, "1000 to 25000 K"},
-          {"multiplier", number, "factor"},
-          {"dimming", number, "0 to 1"},
-          {"maintenance", number, "0 to 1"},
-          {"group", text, "light group; default: the name"}}},
+        {"sky", false, "Light of the sky",
+         with_colour_and_level(
+             {{"model",
+               text,
+               "distribution of the luminance",
+               true,
+               {"overcast", "clear", "cie", "perez", "uniform", "map"}},
+              {"type", count, "of the CIE standard general skies, 1 to 15"},
+              {"zenith_luminance", number, "cd/m² or W/(m² sr)"},
+              {"horizontal", number, "illuminance of the open ground"},
+              {"direct_normal", number, "W/m², of perez"},
+              {"diffuse_horizontal", number, "W/m², of perez"},
+              {"ground_reflectance", number, "of the plane below the horizon, 0 to 1"},
+              {"file", text, "equirectangular .hdr or .exr"},
+              {"rotation", number, "of the map, degrees"},
+              {"scale", number, "of the map"},
+              {"name", text, "default: sky"}})},
+        {"sun", false, "Light of the sun",
+         with_colour_and_level({{"altitude", number, "degrees above the horizon"},
+                                {"azimuth", number, "degrees from north over east"},
+                                {"direction", vector, "towards it"},
+                                {"normal", number, "illuminance across its rays"},
+                                {"diameter", number, "degrees"},
+                                {"name", text, "default: sun"}})},
         {"scenes",
          true,
          "Factors of light groups under a name",
