@@ -17,5 +17,6 @@ void add_prorad(CLI::App& app);
 void add_probe(CLI::App& app);
 void add_render(CLI::App& app);
 void add_solve(CLI::App& app);
+void add_view(CLI::App& app);  ///< not in programs that were built without EXITANCE_VIEWER
 
 }  // namespace exitance::cli

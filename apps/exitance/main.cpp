@@ -32,6 +32,9 @@ void describe_program(CLI::App& app) {
 
 void add_commands(CLI::App& app) {
     exitance::cli::add_solve(app);
+#ifdef EXITANCE_VIEWER
+    exitance::cli::add_view(app);
+#endif
     exitance::cli::add_render(app);
     exitance::cli::add_probe(app);
     exitance::cli::add_form_factors(app);

@@ -88,11 +88,12 @@ void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const
 
 Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
                         const Radiosity& radiosity, const Shooting& solver) {
-    if (!snapshots.take || !snapshots.every) return observe;
-    return [&, next = *snapshots.every](const Progress& progress) mutable {
+    if (!snapshots.take || (!snapshots.every && !snapshots.wanted)) return observe;
+    return [&, next = snapshots.every](const Progress& progress) mutable {
         if (observe) observe(progress);
-        if (progress.shots < next) return;
-        next = progress.shots + *snapshots.every;
+        const bool due = next && progress.shots >= *next;
+        if (due) next = progress.shots + *snapshots.every;
+        if (!due && !(snapshots.wanted && snapshots.wanted(progress))) return;
         take_snapshot(snapshots, radiosity, &solver);
     };
 }

@@ -15,9 +15,12 @@ namespace exitance {
 
 /// The solution so far, handed out while the scene is being lit and once when that ends.
 struct Snapshots {
-    std::optional<std::uint64_t> every{};  ///< shots from one to the next; default: only at the end
-    bool ambient = false;                  ///< with an estimate of what is still unshot
+    std::optional<std::uint64_t>
+        every{};           ///< shots from one to the next; default: none till the end
+    bool ambient = false;  ///< with an estimate of what is still unshot
     std::function<void(Solution)> take{};  ///< called from the calling thread
+    /// Asked between shots whether one is wanted now; `every` holds besides.
+    std::function<bool(const Progress&)> wanted{};
 };
 
 /// Lights the scene. `observe` is called from the calling thread between shots; when `cancel` is

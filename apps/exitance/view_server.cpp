@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "view_server.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <httplib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <condition_variable>
+#include <cstring>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "exitance/run/error.h"
+#include "exitance/run/progress.h"
+#include "viewer_assets.h"
+
+namespace exitance::cli {
+
+namespace {
+
+constexpr std::size_t most_body = 1024;
+constexpr std::size_t threads = 32;  // one per open page, and some for what they load
+
+// Nothing but what this server sends is loaded, run or asked; nobody frames the page.
+constexpr const char* security_policy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// 128 random bits as hexadecimal digits.
+std::string make_token() {
+    std::random_device device;
+    std::string token;
+    for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
+    return token;
+}
+
+/// Takes the same time whichever characters differ.
+bool same_text(const std::string& a, const std::string& b) {
+    if (a.size() != b.size()) return false;
+    unsigned difference = 0;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        difference |= static_cast<unsigned char>(a[i]) ^ static_cast<unsigned char>(b[i]);
+    return difference == 0;
+}
+
+/// A file that stays readable when its name is gone.
+class OpenFile {
+  public:
+    explicit OpenFile(const std::filesystem::path& path)
+        : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+        struct stat facts {};
+        if (descriptor_ < 0 || ::fstat(descriptor_, &facts) != 0)
+            throw Error(Fault::could_not_finish,
+                        "cannot read " + path.string() + ": " + std::strerror(errno));
+        size_ = static_cast<std::size_t>(facts.st_size);
+    }
+    ~OpenFile() {
+        if (descriptor_ >= 0) ::close(descriptor_);
+    }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
+
+    std::size_t size() const { return size_; }
+    /// Sends some bytes from `offset` on, at most `length`; false if there are none.
+    bool send(std::size_t offset, std::size_t length, httplib::DataSink& sink) const {
+        std::vector<char> block(std::min<std::size_t>(length, 1u << 18));
+        const ssize_t got =
+            ::pread(descriptor_, block.data(), block.size(), static_cast<off_t>(offset));
+        return got > 0 && sink.write(block.data(), static_cast<std::size_t>(got));
+    }
+
+  private:
+    int descriptor_;
+    std::size_t size_ = 0;
+};
+
+}  // namespace
+
+struct ViewServer::State {
+    httplib::Server server;
+    std::thread listening;
+    std::string token = make_token(), url;
+    std::array<std::string, 2> hosts;  ///< as a browser names this server
+
+    mutable std::mutex mutex;
+    std::condition_variable news;
+    std::shared_ptr<const OpenFile> solution;
+    std::uint64_t revision = 0;  ///< of the solution; 0 = none yet
+    std::uint64_t told = 0;      ///< how often progress was told
+    std::string progress;
+    std::function<void(ViewCommand)> heard;
+    std::size_t pages = 0;
+    std::optional<Stopwatch> deserted_since;
+    std::atomic<bool> ending = false;
+
+    httplib::Server::HandlerResponse gate(const httplib::Request& request,
+                                          httplib::Response& response) const;
+    void serve_assets();
+    void serve_solution();
+    void serve_events();
+    void serve_commands();
+    bool send_news(std::uint64_t& seen_revision, std::uint64_t& seen_told, httplib::DataSink& sink);
+};
+
+/// Refuses before anything is looked up.
+httplib::Server::HandlerResponse ViewServer::State::gate(const httplib::Request& request,
+                                                         httplib::Response& response) const {
+    const auto refuse = [&](int status, const char* why) {
+        response.status = status;
+        response.set_content(std::string(why) + "\n", "text/plain");
+        return httplib::Server::HandlerResponse::Handled;
+    };
+    const auto is_ours = [&](const std::string& host) {
+        return host == hosts[0] || host == hosts[1];
+    };
+    if (request.get_header_value_count("Host") != 1 || !is_ours(request.get_header_value("Host")))
+        return refuse(421, "not a host of this server");
+    if (request.has_header("Origin")) {
+        const std::string origin = request.get_header_value("Origin");
+        if (!origin.starts_with("http://") || !is_ours(origin.substr(7)))
+            return refuse(403, "requests of other origins are refused");
+    }
+    const std::string site = request.get_header_value("Sec-Fetch-Site");
+    const bool typed = site.empty() || site == "none";
+    if (!typed && site != "same-origin") return refuse(403, "requests of other sites are refused");
+    if (request.method != "GET" && request.method != "HEAD" && request.method != "POST")
+        return refuse(405, "expected GET, HEAD or POST");
+    if (request.path.size() < token.size() + 2 || request.path[token.size() + 1] != '/' ||
+        !same_text(request.path.substr(1, token.size()), token))
+        return refuse(404, "there is nothing here");
+    return httplib::Server::HandlerResponse::Unhandled;
+}
+
+void ViewServer::State::serve_assets() {
+    for (const ViewerAsset& asset : viewer_assets()) {
+        const auto send = [&asset](const httplib::Request&, httplib::Response& response) {
+            response.set_content(asset.content.data(), asset.content.size(),
+                                 std::string(asset.type).c_str());
+        };
+        // Patterns are regular expressions; a dot of a name matches itself.
+        std::string name(asset.name);
+        if (const auto dot = name.find('.'); dot != std::string::npos) name.insert(dot, "\\");
+        server.Get("/" + token + "/" + name, send);
+        if (asset.name == "index.html") server.Get("/" + token + "/", send);
+    }
+}
+
+void ViewServer::State::serve_solution() {
+    server.Get("/" + token + "/solution\\.glb", [this](const httplib::Request&,
+                                                       httplib::Response& response) {
+        const std::lock_guard lock(mutex);
+        if (!solution) {
+            response.status = 404;
+            response.set_content("not solved yet\n", "text/plain");
+            return;
+        }
+        response.set_content_provider(
+            solution->size(), "model/gltf-binary",
+            [file = solution](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+                return file->send(offset, length, sink);
+            });
+    });
+}
+
+/// Server-sent events: "solution" when there is a new one, "progress" while it is being made.
+void ViewServer::State::serve_events() {
+    server.Get("/" + token + "/events",
+               [this](const httplib::Request&, httplib::Response& response) {
+                   {
+                       const std::lock_guard lock(mutex);
+                       ++pages;
+                       deserted_since.reset();
+                   }
+                   response.set_chunked_content_provider(
+                       "text/event-stream",
+                       [this, seen_revision = std::uint64_t{0}, seen_told = std::uint64_t{0}](
+                           std::size_t, httplib::DataSink& sink) mutable {
+                           return send_news(seen_revision, seen_told, sink);
+                       },
+                       [this](bool) {
+                           const std::lock_guard lock(mutex);
+                           if (--pages == 0) deserted_since.emplace();
+                       });
+               });
+}
+
+/// Waits for something new for a while; a silent line between shows whether the page still listens.
+bool ViewServer::State::send_news(std::uint64_t& seen_revision, std::uint64_t& seen_told,
+                                  httplib::DataSink& sink) {
+    std::string text;
+    {
+        std::unique_lock lock(mutex);
+        news.wait_for(lock, std::chrono::milliseconds(500),
+                      [&] { return ending || revision != seen_revision || told != seen_told; });
+        if (ending) return false;
+        if (told != seen_told) text += "event: progress\ndata: " + progress + "\n\n";
+        if (revision != seen_revision)
+            text += fmt::format("event: solution\ndata: {}\n\n", revision);
+        seen_told = told, seen_revision = revision;
+    }
+    if (text.empty()) text = ":\n\n";
+    return sink.is_writable() && sink.write(text.data(), text.size());
+}
+
+/// {"command": "pause" | "resume" | "stop"}
+void ViewServer::State::serve_commands() {
+    server.Post("/" + token + "/command", [this](const httplib::Request& request,
+                                                 httplib::Response& response) {
+        const auto said = nlohmann::json::parse(request.body, nullptr, false);
+        const std::string name =
+            said.is_object() && said.contains("command") && said["command"].is_string()
+                ? said["command"].get<std::string>()
+                : "";
+        const std::array known{std::pair{"pause", ViewCommand::pause},
+                               std::pair{"resume", ViewCommand::resume},
+                               std::pair{"stop", ViewCommand::stop}};
+        const auto command = std::find_if(known.begin(), known.end(),
+                                          [&](const auto& entry) { return name == entry.first; });
+        if (command == known.end()) {
+            response.status = 400;
+            response.set_content("expected {\"command\": \"pause\", \"resume\" or \"stop\"}\n",
+                                 "text/plain");
+            return;
+        }
+        std::function<void(ViewCommand)> hear;
+        {
+            const std::lock_guard lock(mutex);
+            hear = heard;
+        }
+        if (hear) hear(command->second);
+        response.status = 204;
+    });
+}
+
+ViewServer::ViewServer(int port) : state_(std::make_unique<State>()) {
+    State& s = *state_;
+    s.server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
+    s.server.set_payload_max_length(most_body);
+    s.server.set_keep_alive_timeout(2);
+    s.server.set_tcp_nodelay(true);
+    // Two programs never share a port.
+    s.server.set_socket_options([](int socket) {
+        const int yes = 1;
+        ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    s.server.set_default_headers({{"Content-Security-Policy", security_policy},
+                                  {"X-Content-Type-Options", "nosniff"},
+                                  {"Referrer-Policy", "no-referrer"},
+                                  {"Cross-Origin-Resource-Policy", "same-origin"},
+                                  {"Cross-Origin-Opener-Policy", "same-origin"},
+                                  {"Cache-Control", "no-store"}});
+    s.server.set_pre_routing_handler(
+        [&s](const httplib::Request& request, httplib::Response& response) {
+            return s.gate(request, response);
+        });
+    s.serve_assets();
+    s.serve_solution();
+    s.serve_events();
+    s.serve_commands();
+
+    const std::string loopback = "127.0.0.1";
+    const int bound = port == 0                               ? s.server.bind_to_any_port(loopback)
+                      : s.server.bind_to_port(loopback, port) ? port
+                                                              : -1;
+    if (bound <= 0)
+        throw Error(Fault::could_not_finish,
+                    port == 0 ? std::string("no port of the loopback can be had")
+                              : fmt::format("port {} cannot be had: something else uses it, or it "
+                                            "is reserved",
+                                            port));
+    s.hosts = {fmt::format("127.0.0.1:{}", bound), fmt::format("localhost:{}", bound)};
+    s.url = "http://" + s.hosts[0] + "/" + s.token + "/";
+    s.listening = std::thread([&s] { s.server.listen_after_bind(); });
+}
+
+ViewServer::~ViewServer() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->ending = true;
+    }
+    state_->news.notify_all();
+    while (!state_->server.is_running()) std::this_thread::yield();  // stop() before would be lost
+    state_->server.stop();
+    state_->listening.join();
+}
+
+const std::string& ViewServer::url() const {
+    return state_->url;
+}
+
+void ViewServer::show(const std::filesystem::path& solution) {
+    auto file = std::make_shared<const OpenFile>(solution);
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->solution = std::move(file);
+        ++state_->revision;
+    }
+    state_->news.notify_all();
+}
+
+void ViewServer::tell_progress(const std::string& json) {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->progress = json;
+        ++state_->told;
+    }
+    state_->news.notify_all();
+}
+
+void ViewServer::on_command(std::function<void(ViewCommand)> heard) {
+    const std::lock_guard lock(state_->mutex);
+    state_->heard = std::move(heard);
+}
+
+bool ViewServer::deserted(double seconds) const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->pages == 0 && state_->deserted_since &&
+           state_->deserted_since->seconds() > seconds;
+}
+
+bool ViewServer::has_pages() const {
+    const std::lock_guard lock(state_->mutex);
+    return state_->pages > 0;
+}
+
+}  // namespace exitance::cli

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// A solution as meshes: all vertices lie on the graphics card once, the light of each group as an
+// attribute of its own, so that a slider changes a few numbers and nothing else.
+
+import * as THREE from 'three'
+import { MeshBVH } from 'three-mesh-bvh'
+import { type LookUniforms, surfaceMaterial } from './shading'
+import type { Primitive, Solution, TextureImage } from './solution'
+
+// WebGL 2 promises 16 attributes; position, normal and two texture places take four.
+const MOST_COLUMNS = 12
+
+async function texture(image: TextureImage): Promise<THREE.Texture> {
+  const out = new THREE.Texture(await createImageBitmap(image.blob, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' }))
+  const wrap: Record<number, THREE.Wrapping> = { 10497: THREE.RepeatWrapping, 33071: THREE.ClampToEdgeWrapping, 33648: THREE.MirroredRepeatWrapping }
+  out.wrapS = wrap[image.wrapS]
+  out.wrapT = wrap[image.wrapT]
+  if (image.nearest) out.magFilter = THREE.NearestFilter
+  out.flipY = false
+  out.colorSpace = THREE.SRGBColorSpace
+  out.needsUpdate = true
+  return out
+}
+
+const isPatterned = (solution: Solution, p: Primitive) =>
+  !!(solution.materials[p.material].reflectancePattern || solution.materials[p.material].exitancePattern)
+
+export class LitMesh extends THREE.Group {
+  readonly geometry = new THREE.BufferGeometry()
+  readonly bvh: MeshBVH
+  private shine: THREE.Mesh          // columns: exitance
+  private receive: THREE.Mesh        // columns: irradiance; patterns, and everything when it is measured
+  private wires?: THREE.Mesh
+  private columns: number
+
+  private constructor(private solution: Solution, private shared: LookUniforms, textures: THREE.Texture[]) {
+    super()
+    this.columns = Math.min(MOST_COLUMNS, solution.groups.length)
+    const attribute = (values: Float32Array, width: number) => new THREE.BufferAttribute(values, width)
+    this.geometry.setAttribute('position', attribute(solution.positions, 3))
+    this.geometry.setIndex(new THREE.BufferAttribute(solution.indices, 1))
+    // In the order of the file: a triangle's number says which surface it belongs to.
+    this.bvh = new MeshBVH(this.geometry, { indirect: true })
+
+    this.geometry.setAttribute('normal', attribute(solution.normals, 3))
+    if (solution.uv0) this.geometry.setAttribute('uv0', attribute(solution.uv0, 2))
+    if (solution.uv1) this.geometry.setAttribute('uv1', attribute(solution.uv1, 2))
+    const shining = this.withColumns(solution.exitance), receiving = this.withColumns(solution.irradiance)
+    this.shine = new THREE.Mesh(shining, this.materials(shining, 'exitance', textures))
+    this.receive = new THREE.Mesh(receiving, this.materials(receiving, 'irradiance', textures))
+    const box = new THREE.Box3().setFromBufferAttribute(this.geometry.getAttribute('position') as THREE.BufferAttribute)
+    this.geometry.boundingBox = box
+    for (const mesh of [this.shine, this.receive]) mesh.frustumCulled = false
+    this.add(this.shine, this.receive)
+    this.showIrradiance(false)
+  }
+
+  static async make(solution: Solution, shared: LookUniforms): Promise<LitMesh> {
+    return new LitMesh(solution, shared, await Promise.all(solution.textures.map(texture)))
+  }
+
+  /** How many factors the shader takes: the groups, or fewer where they are too many. */
+  static columnsOf(solution: Solution): number {
+    return Math.min(MOST_COLUMNS, solution.groups.length)
+  }
+
+  private withColumns(values: Float32Array[]): THREE.BufferGeometry {
+    const out = new THREE.BufferGeometry()
+    out.setIndex(this.geometry.index)
+    for (const [name, attribute] of Object.entries(this.geometry.attributes)) out.setAttribute(name, attribute)
+    values.slice(0, this.columns).forEach((column, k) =>
+      out.setAttribute(`column${k}`, new THREE.BufferAttribute(column, 3)))
+    return out
+  }
+
+  /** One draw per run of primitives that look alike. */
+  private materials(geometry: THREE.BufferGeometry, columnsAre: 'exitance' | 'irradiance',
+    textures: THREE.Texture[]): THREE.Material[] {
+    const out: THREE.Material[] = []
+    for (const p of this.solution.primitives) {
+      geometry.addGroup(3 * p.firstTriangle, 3 * p.triangles, out.length)
+      const material = surfaceMaterial(this.columns, columnsAre, this.solution.materials[p.material], p.group,
+        textures, this.shared)
+      material.visible = columnsAre === 'irradiance' || !isPatterned(this.solution, p)
+      out.push(material)
+    }
+    return out
+  }
+
+  /** Draws from the irradiance of all surfaces, not only of those with patterns. */
+  showIrradiance(everywhere: boolean): void {
+    this.shine.visible = !everywhere
+    const materials = this.receive.material as THREE.Material[]
+    this.solution.primitives.forEach((p, i) => {
+      materials[i].visible = everywhere || isPatterned(this.solution, p)
+    })
+    this.receive.visible = materials.some((m) => m.visible)
+  }
+
+  showWires(shown: boolean): void {
+    if (shown && !this.wires) {
+      const material = new THREE.MeshBasicMaterial({ wireframe: true, color: 0x7fb4ff, transparent: true, opacity: 0.35,
+        polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 })
+      this.wires = new THREE.Mesh(this.geometry, material)
+      this.wires.frustumCulled = false
+      this.add(this.wires)
+    }
+    if (this.wires) this.wires.visible = shown
+  }
+
+  /** Sets what each group counts; `factors` are three per group. Beyond what a vertex can carry
+   * the rest is summed here into the last column. */
+  setFactors(factors: number[]): void {
+    const uniform = this.shared.factors.value
+    const groups = this.solution.groups.length
+    this.shared.groupFactors.value.set(factors)
+    if (groups <= this.columns) {
+      uniform.set(factors)
+      return
+    }
+    const last = this.columns - 1
+    uniform.set(factors.slice(0, 3 * last))
+    uniform.fill(1, 3 * last)
+    for (const [mesh, columns] of [[this.shine, this.solution.exitance], [this.receive, this.solution.irradiance]] as const) {
+      const sum = new Float32Array(columns[0].length)
+      for (let g = last; g < groups; ++g)
+        for (let i = 0; i < sum.length; ++i) sum[i] += factors[3 * g + i % 3] * columns[g][i]
+      const attribute = mesh.geometry.getAttribute(`column${last}`) as THREE.BufferAttribute
+      attribute.array.set(sum)
+      attribute.needsUpdate = true
+    }
+  }
+
+  dispose(): void {
+    for (const mesh of [this.shine, this.receive]) {
+      mesh.geometry.dispose()
+      for (const material of mesh.material as THREE.Material[]) material.dispose()
+    }
+    this.geometry.dispose()
+    ;(this.wires?.material as THREE.Material | undefined)?.dispose()
+  }
+}

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// The light of a mix, summed per vertex on the graphics card, and its looks: picture, false
+// colours, normals, reflectance.
+
+import * as THREE from 'three'
+import { FALSE_COLOUR_GLSL } from './false_colour'
+import type { Material, Pattern } from './solution'
+import { TONE_GLSL } from './tone'
+
+export type Look = 'picture' | 'illuminance' | 'exitance' | 'normals' | 'reflectance'
+export const LOOKS: Look[] = ['picture', 'illuminance', 'exitance', 'normals', 'reflectance']
+
+/** Shared by all materials, so that setting a value shows everywhere. */
+export interface LookUniforms {
+  factors: { value: Float32Array }     // RGB per column
+  groupFactors: { value: Float32Array } // RGB per group, for what shines itself
+  look: { value: number }
+  raw: { value: boolean }              // linear radiance and coverage, for measuring
+  exposure: { value: number }
+  toneCurve: { value: number }
+  white: { value: number }
+  range: { value: THREE.Vector2 }      // of the false colours
+  contour: { value: number }           // step of the contours, 0 = none
+  section: { value: THREE.Vector4 }    // shown where dot(xyz, p) <= w; 0 = everywhere
+  [name: string]: THREE.IUniform
+}
+
+export function lookUniforms(columns: number, groups: number): LookUniforms {
+  return {
+    factors: { value: new Float32Array(3 * columns) },
+    groupFactors: { value: new Float32Array(3 * groups) },
+    look: { value: 0 }, raw: { value: false }, exposure: { value: 1 }, toneCurve: { value: 1 },
+    white: { value: 4 }, range: { value: new THREE.Vector2(0, 1) }, contour: { value: 0 },
+    section: { value: new THREE.Vector4(0, 0, 0, 0) },
+  }
+}
+
+const list = <T>(n: number, each: (k: number) => T) => Array.from({ length: n }, (_, k) => each(k))
+
+/** Columns are exitance, or irradiance where a pattern makes exitance vary within a triangle. */
+function vertexShader(columns: number, patterned: boolean): string {
+  return /* glsl */ `
+precision highp float;
+uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
+uniform vec3 factors[${columns}];
+in vec3 position, normal;
+${patterned ? 'in vec2 uv0, uv1;\nout vec2 place0, place1;' : ''}
+${list(columns, (k) => `in vec3 column${k};`).join('\n')}
+out vec3 light, facing, where;
+void main() {
+  light = ${list(columns, (k) => `factors[${k}] * column${k}`).join(' + ')};
+  facing = normal;
+  ${patterned ? 'place0 = uv0; place1 = uv1;' : ''}
+  vec4 world = modelMatrix * vec4(position, 1.0);
+  where = world.xyz;
+  gl_Position = projectionMatrix * viewMatrix * world;
+}`
+}
+
+function fragmentShader(patterned: boolean): string {
+  return /* glsl */ `
+precision highp float;
+uniform int look;
+uniform bool raw, isIrradiance;
+uniform float exposure, contour;
+uniform vec2 range;
+uniform vec4 section;
+uniform vec3 reflectance, emission, emissionFactor;
+${patterned ? `
+uniform sampler2D reflectanceMap, emissionMap;
+uniform vec3 reflectanceTexel, emissionTexel;
+uniform vec2 most;
+in vec2 place0, place1;` : ''}
+in vec3 light, facing, where;
+out vec4 colour;
+${TONE_GLSL}
+${FALSE_COLOUR_GLSL}
+void main() {
+  if (dot(section.xyz, where) > section.w && section.xyz != vec3(0.0)) discard;
+  vec3 rho = reflectance, E = emission;
+  ${patterned ? `
+  if (reflectanceTexel.r >= 0.0)
+    rho = reflectanceTexel * min(texture(reflectanceMap, place0).rgb, most.x);
+  if (emissionTexel.r >= 0.0)
+    E = emissionTexel * min(texture(emissionMap, place1).rgb, most.y);` : ''}
+  vec3 B = isIrradiance ? E * emissionFactor + rho * light : light;
+  if (raw) { colour = vec4(B / 3.14159265359, 1.0); return; }
+  float value = dot(look == 1 ? light : B, LUMINANCE);
+  vec3 shown;
+  if (look == 1 || look == 2) {
+    shown = falseColour((value - range.x) / max(range.y - range.x, 1e-30));
+  } else if (look == 3) {
+    shown = 0.5 + 0.5 * normalize(facing);
+  } else if (look == 4) {
+    shown = rho;
+  } else {
+    shown = toned(exposure * B / 3.14159265359);
+  }
+  if (contour > 0.0) {
+    float level = value / contour, width = fwidth(level);
+    float away = abs(fract(level - 0.5) - 0.5) / max(width, 1e-6);
+    float line = (1.0 - smoothstep(0.6, 1.4, away)) * step(0.5, level) * (1.0 - smoothstep(0.3, 0.6, width));
+    shown = mix(shown, dot(shown, LUMINANCE) > 0.2 ? vec3(0.0) : vec3(0.9), 0.85 * line);
+  }
+  colour = vec4(look == 3 ? shown : encoded(shown), 1.0);
+}`
+}
+
+function mapUniforms(pattern: Pattern | undefined, textures: THREE.Texture[]) {
+  return { map: pattern ? textures[pattern.texture] : null,
+    texel: new THREE.Vector3(...(pattern?.factor ?? [-1, -1, -1])), most: pattern?.most ?? 1 }
+}
+
+/** The material of one primitive. `columnsAre`: what the geometry's columns hold. */
+export function surfaceMaterial(columns: number, columnsAre: 'exitance' | 'irradiance', material: Material,
+  group: number, textures: THREE.Texture[], shared: LookUniforms): THREE.RawShaderMaterial {
+  const patterned = columnsAre === 'irradiance' && !!(material.reflectancePattern || material.exitancePattern)
+  const r = mapUniforms(material.reflectancePattern, textures), e = mapUniforms(material.exitancePattern, textures)
+  // The factor of the group that the surface shines in follows the mix: a view of the same array.
+  const emissionFactor = { get value() { return new THREE.Vector3().fromArray(shared.groupFactors.value, 3 * group) } }
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: vertexShader(columns, patterned),
+    fragmentShader: fragmentShader(patterned),
+    uniforms: {
+      ...shared,
+      isIrradiance: { value: columnsAre === 'irradiance' },
+      reflectance: { value: new THREE.Vector3(...material.reflectance) },
+      emission: { value: new THREE.Vector3(...material.exitance) },
+      emissionFactor,
+      ...(patterned ? {
+        reflectanceMap: { value: r.map ?? e.map }, emissionMap: { value: e.map ?? r.map },
+        reflectanceTexel: { value: r.texel }, emissionTexel: { value: e.texel },
+        most: { value: new THREE.Vector2(r.most, e.most) },
+      } : {}),
+    },
+    side: THREE.FrontSide,
+  })
+}

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The canvas: draws the lit mesh and what is laid over it, and measures what it drew.
+
+import * as THREE from 'three'
+import { LitMesh } from './lit_mesh'
+import { applyPose, type Pose } from './pose'
+import { type Look, LOOKS, lookUniforms, type LookUniforms } from './shading'
+import type { Solution } from './solution'
+import { automaticExposure, TONE_CURVES, type ToneCurve, whiteOf } from './tone'
+
+export class Stage {
+  readonly renderer: THREE.WebGLRenderer
+  readonly camera = new THREE.PerspectiveCamera(45, 1, 0.01, 100)
+  readonly scene = new THREE.Scene()
+  /** Grids, tape and the like; not measured, not exposed for. */
+  readonly overlay = new THREE.Group()
+  mesh!: LitMesh
+  uniforms!: LookUniforms
+  private meter = new THREE.WebGLRenderTarget(96, 54, { type: THREE.FloatType, depthBuffer: true })
+  private eye = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType, depthBuffer: true })
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' })
+    this.renderer.xr.enabled = true
+    this.scene.add(this.overlay)
+  }
+
+  async show(solution: Solution): Promise<void> {
+    const uniforms = lookUniforms(LitMesh.columnsOf(solution), solution.groups.length)
+    if (this.uniforms)
+      for (const name of Object.keys(uniforms))
+        if (name !== 'factors' && name !== 'groupFactors') uniforms[name] = this.uniforms[name]
+    const mesh = await LitMesh.make(solution, uniforms)
+    if (this.mesh) {
+      this.scene.remove(this.mesh)
+      this.mesh.dispose()
+    }
+    this.mesh = mesh
+    this.uniforms = uniforms
+    this.scene.add(mesh)
+  }
+
+  setLook(look: Look): void {
+    this.uniforms.look.value = LOOKS.indexOf(look)
+    this.mesh.showIrradiance(look === 'illuminance')
+  }
+  setToneCurve(curve: ToneCurve): void {
+    this.uniforms.toneCurve.value = TONE_CURVES.indexOf(curve)
+  }
+
+  resize(): boolean {
+    const { clientWidth: width, clientHeight: height } = this.canvas
+    const ratio = Math.min(devicePixelRatio, 2)
+    const size = this.renderer.getSize(new THREE.Vector2())
+    if (size.x === width && size.y === height && this.renderer.getPixelRatio() === ratio) return false
+    this.renderer.setPixelRatio(ratio)
+    this.renderer.setSize(width, height, false)
+    return true
+  }
+
+  private aim(pose: Pose, aspect: number): void {
+    const reach = this.mesh.geometry.boundingBox!.getSize(new THREE.Vector3()).length()
+    this.camera.aspect = aspect
+    this.camera.near = Math.max(1e-4, 2e-4 * reach)
+    this.camera.far = 4 * reach + pose.eye.length()
+    applyPose(pose, this.camera)
+  }
+
+  draw(pose: Pose): void {
+    if (!this.renderer.xr.isPresenting) this.aim(pose, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight))
+    this.renderer.render(this.scene, this.camera)
+  }
+
+  /** RGB radiance and coverage as they reach the eye, without tone mapping. */
+  private measure(target: THREE.WebGLRenderTarget): Float32Array {
+    const pixels = new Float32Array(4 * target.width * target.height)
+    const colour = this.renderer.getClearColor(new THREE.Color()), alpha = this.renderer.getClearAlpha()
+    const xr = this.renderer.xr.enabled
+    this.renderer.xr.enabled = false
+    this.renderer.setClearColor(0, 0)
+    this.uniforms.raw.value = true
+    this.overlay.visible = false
+    this.renderer.setRenderTarget(target)
+    this.renderer.render(this.scene, this.camera)
+    this.renderer.readRenderTargetPixels(target, 0, 0, target.width, target.height, pixels)
+    this.renderer.setRenderTarget(null)
+    this.overlay.visible = true
+    this.uniforms.raw.value = false
+    this.renderer.setClearColor(colour, alpha)
+    this.renderer.xr.enabled = xr
+    return pixels
+  }
+
+  /** Exposure that suits what is seen, or the given one, and the white that goes with it. */
+  expose(pose: Pose, given?: number): { exposure: number; white: number } {
+    this.aim(pose, this.canvas.clientWidth / Math.max(1, this.canvas.clientHeight))
+    const pixels = this.measure(this.meter)
+    const exposure = given ?? automaticExposure(pixels)
+    return { exposure, white: whiteOf(pixels, exposure) }
+  }
+
+  /** Linear RGB radiance of one pixel of the canvas [CSS pixels]. */
+  radianceAt(pose: Pose, x: number, y: number): [number, number, number] {
+    const { clientWidth: width, clientHeight: height } = this.canvas
+    this.aim(pose, width / height)
+    this.camera.setViewOffset(width, height, Math.floor(x), Math.floor(y), 1, 1)
+    const pixel = this.measure(this.eye)
+    this.camera.clearViewOffset()
+    return [pixel[0], pixel[1], pixel[2]]
+  }
+
+  /** From the eye through a place on the canvas [CSS pixels]. */
+  ray(pose: Pose, x: number, y: number): THREE.Ray {
+    const { clientWidth: width, clientHeight: height } = this.canvas
+    this.aim(pose, width / Math.max(1, height))
+    const caster = new THREE.Raycaster()
+    caster.setFromCamera(new THREE.Vector2(2 * x / width - 1, 1 - 2 * y / height), this.camera)
+    return caster.ray
+  }
+
+  /** A picture of any size as PNG. */
+  async picture(pose: Pose, width: number, height: number): Promise<Blob> {
+    const ratio = this.renderer.getPixelRatio(), size = this.renderer.getSize(new THREE.Vector2())
+    this.renderer.setPixelRatio(1)
+    this.renderer.setSize(width, height, false)
+    this.aim(pose, width / height)
+    this.renderer.render(this.scene, this.camera)
+    const blob = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, 'image/png'))
+    this.renderer.setPixelRatio(ratio)
+    this.renderer.setSize(size.x, size.y, false)
+    if (!blob) throw Error('The picture could not be made.')
+    return blob
+  }
+}
