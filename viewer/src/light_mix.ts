@@ -73,11 +73,10 @@ export class LightMix extends EventTarget {
     this.dispatchEvent(new Event('change'))
   }
 
-  /** Takes over what was set for another revision of the same groups. */
-  adopt(other: LightMix): void {
-    if (other.groups.length !== this.groups.length) return
-    other.groups.forEach((g, i) => Object.assign(this.groups[i], g))
-    this.scene = other.scene
-    this.shown = this.wanted()
+  /** Goes on with another revision of a solution; whether it has the same groups. */
+  continueWith(solution: Solution): boolean {
+    if (JSON.stringify(solution.groups) !== JSON.stringify(this.solution.groups)) return false
+    this.solution = solution
+    return true
   }
 }

@@ -59,10 +59,13 @@ export class Stage {
   }
 
   private aim(pose: Pose, aspect: number): void {
-    const reach = this.mesh.geometry.boundingBox!.getSize(new THREE.Vector3()).length()
+    // As tight as it goes: lamps hang a tenth of a millimetre below ceilings.
+    const box = this.mesh.geometry.boundingBox!, reach = box.getSize(new THREE.Vector3()).length()
+    const eye = pose.eye.clone().applyQuaternion(this.mesh.quaternion.clone().invert())
+    const outside = box.distanceToPoint(eye)
     this.camera.aspect = aspect
-    this.camera.near = Math.max(1e-4, 2e-4 * reach)
-    this.camera.far = 4 * reach + pose.eye.length()
+    this.camera.near = Math.max(2e-3 * reach, 0.7 * outside)
+    this.camera.far = 1.01 * (outside + reach) + this.camera.near
     applyPose(pose, this.camera)
   }
 

@@ -1,0 +1,352 @@
+// SPDX-License-Identifier: Apache-2.0
+// node --test: the walkthrough does what its controls say, checked against the program's answers.
+import assert from 'node:assert/strict'
+import { readFileSync, writeFileSync } from 'node:fs'
+import { join } from 'node:path'
+import { after, before, describe, it } from 'node:test'
+import { pathToFileURL } from 'node:url'
+import { folder, landed, launch, open, place, pose, program, radiance, removeFolder, root, run, serve } from './viewing.mjs'
+
+const near = (a, b, tolerance, what) =>
+  assert.ok(Math.abs(a - b) <= tolerance, `${what ?? 'value'}: ${a}, expected ${b} within ${tolerance}`)
+const glb = (name) => join(folder, name)
+
+let browser
+before(async () => {
+  run('solve', join(root, 'scenes/cornell.toml'), '-o', 'cornell.glb', '--error', '0.1', '--quiet')
+  // Two lamps in groups of their own, a scene that dims one of them, z up, photometric.
+  writeFileSync(glb('room.toml'), `title = "Two lamps"
+quantity = "photometric"
+up = "z"
+[[scenes]]
+name = "evening"
+groups = { left = 0.25, right = 0 }
+[[material]]
+name = "wall"
+reflectance = 0.6
+[[material]]
+name = "left lamp"
+exitance = 3000
+group = "left"
+[[material]]
+name = "right lamp"
+exitance = [2000, 1000, 500]
+group = "right"
+[[camera]]
+name = "door"
+eye = [0.3, 0.3, 1.6]
+look_at = [3, 2, 1]
+[[camera]]
+name = "window"
+eye = [3.5, 2.5, 1.6]
+look_at = [0, 0, 0.5]
+` + [['floor', 'wall', [[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]]], ['ceiling', 'wall', [[0, 0, 2.5], [0, 3, 2.5], [4, 3, 2.5], [4, 0, 2.5]]],
+    ['south', 'wall', [[0, 0, 0], [0, 0, 2.5], [4, 0, 2.5], [4, 0, 0]]], ['north', 'wall', [[0, 3, 0], [4, 3, 0], [4, 3, 2.5], [0, 3, 2.5]]],
+    ['west', 'wall', [[0, 0, 0], [0, 3, 0], [0, 3, 2.5], [0, 0, 2.5]]], ['east', 'wall', [[4, 0, 0], [4, 0, 2.5], [4, 3, 2.5], [4, 3, 0]]],
+    ['lamp 1', 'left lamp', [[0.8, 1.2, 2.4], [0.8, 1.8, 2.4], [1.4, 1.8, 2.4], [1.4, 1.2, 2.4]]],
+    ['lamp 2', 'right lamp', [[2.6, 1.2, 2.4], [2.6, 1.8, 2.4], [3.2, 1.8, 2.4], [3.2, 1.2, 2.4]]]]
+    .map(([name, material, corners]) => `[[polygon]]\nname = "${name}"\nmaterial = "${material}"\ncorners = ${JSON.stringify(corners)}\n`).join(''))
+  run('solve', 'room.toml', '-o', 'room.glb', '--error', '0.1', '--quiet')
+  browser = await launch()
+})
+after(async () => {
+  await browser?.close()
+  removeFolder()
+})
+
+/** Serves `file`, opens it, and at the end nothing may have gone wrong. */
+async function visit(file, look, options) {
+  const server = await serve(file)
+  try {
+    const { page, faults } = await open(browser, server.url, options)
+    await look(page, server)
+    assert.deepEqual(faults, [])
+    await page.context().close()
+  } finally {
+    await server.stop()
+  }
+}
+
+/** Irradiance by `exitance probe` where a reading was taken: luminance of its three bands. */
+function probed(file, reading) {
+  const numbers = [...reading.point, ...reading.normal]
+  writeFileSync(glb('point.csv'), `x,y,z,nx,ny,nz\n${numbers.join(',')}\n`)
+  const [names, values] = run('probe', file, '--points', 'point.csv', '-o', '-').trim().split('\n').map((l) => l.split(','))
+  const value = (name) => Number(values[names.indexOf(name)])
+  return 0.2126 * value('E_r') + 0.7152 * value('E_g') + 0.0722 * value('E_b')
+}
+const reading = (page, x, y) => page.evaluate(([px, py]) => {
+  const r = window.exitance.viewer.readAt(px, py)
+  return r && { ...r, point: r.point.toArray(), normal: r.normal.toArray() }
+}, [x, y])
+
+describe('light', () => {
+  it('half a slider is half a pixel, and other groups keep theirs', () => visit('room.glb', async (page) => {
+    const at = [450, 600]
+    const set = (g, v) => page.locator(`#weight-${g}`).evaluate((e, value) => {
+      e.value = value
+      e.dispatchEvent(new Event('input'))
+    }, v)
+    const both = await radiance(page, ...at)
+    await set(1, 0)
+    const left = await radiance(page, ...at)
+    await set(0, 0.5)
+    const half = await radiance(page, ...at)
+    await set(0, 0)
+    await set(1, 1)
+    const right = await radiance(page, ...at)
+    for (let c = 0; c < 3; ++c) {
+      assert.ok(left[c] > 0 && right[c] > 0)
+      near(half[c], left[c] / 2, 0.01 * left[c], 'half of the left lamp')
+      near(left[c] + right[c], both[c], 0.001 * both[c], 'sum of the lamps')
+    }
+  }))
+
+  it('solo, mute and colour', () => visit('room.glb', async (page) => {
+    const at = [450, 600], both = await radiance(page, ...at)
+    await page.click('#solo-0')
+    const left = await radiance(page, ...at)
+    await page.click('#solo-0')
+    await page.click('#mute-0')
+    const right = await radiance(page, ...at)
+    for (let c = 0; c < 3; ++c) near(left[c] + right[c], both[c], 0.001 * both[c])
+    await page.click('#mute-0')
+    await page.locator('#colour-0').fill('#ff0000')
+    const tinted = await radiance(page, ...at)
+    near(tinted[0], both[0], 0.001 * both[0], 'red passes')
+    near(tinted[2], right[2], 0.001 * right[2], 'of the left lamp no blue does')
+  }))
+
+  it('a named scene is what probe --scene says, after a cross-fade', () => visit('room.glb', async (page) => {
+    const before = await reading(page, 450, 600)
+    await page.selectOption('#scene', { label: 'evening' })
+    await page.waitForFunction(() => !window.exitance.viewer.mix.fading)
+    const after = await reading(page, 450, 600)
+    near(after.illuminance, before.illuminance * before.shares[0] * 0.25, 1e-3 * after.illuminance)
+    near(after.shares[1], 0, 1e-6)
+    assert.equal(await page.inputValue('#weight-0'), '0.25')
+  }))
+})
+
+describe('the instrument', () => {
+  it('reads what exitance probe says', async () => {
+    for (const file of ['cornell.glb', 'room.glb'])
+      await visit(file, async (page) => {
+        for (const [x, y] of [[450, 640], [300, 500], [450, 350], [620, 560]]) {
+          const found = await reading(page, x, y)
+          assert.ok(found, `nothing at ${x}, ${y}`)
+          near(found.illuminance, probed(file, found), 0.01 * found.illuminance, `${file} ${found.surface}`)
+        }
+      })
+  })
+
+  it('shows it under the pointer with unit, surface, material and shares', () => visit('room.glb', async (page) => {
+    await page.mouse.move(450, 640)
+    const found = await reading(page, 450, 640)
+    await page.waitForSelector('#readout:not([hidden])')
+    const text = await page.textContent('#readout')
+    assert.match(text, new RegExp(`^${found.surface}wallIlluminance`))
+    const shown = await page.textContent('#read-irradiance')
+    near(parseFloat(shown), found.illuminance, 0.01 * found.illuminance)
+    assert.match(shown, / lx$/)
+    near(parseFloat(await page.textContent('#read-exitance')), 0.6 * found.illuminance, 0.02 * found.illuminance, 'B = rho H')
+    near(found.shares[0] + found.shares[1], 1, 1e-6)
+    assert.match(text, /left.*%/)
+  }))
+
+  it('false colours agree with their legend', () => visit('cornell.glb', async (page) => {
+    await page.selectOption('#look', 'illuminance')
+    await page.waitForSelector('#legend:not([hidden])')
+    const found = await reading(page, 450, 640)
+    // The legend's own canvas at the height of the value shows the colour that the pixel has.
+    const colours = await page.evaluate(async ([x, y, value]) => {
+      const { viewer } = window.exitance, { low, high } = viewer.range
+      const scale = document.querySelector('#legend canvas')
+      const row = Math.min(127, Math.floor(128 * (1 - (value - low) / (high - low))))
+      const legend = scale.getContext('2d').getImageData(0, row, 1, 1).data
+      const image = await createImageBitmap(await viewer.picture(viewer.canvas.clientWidth, viewer.canvas.clientHeight))
+      const copy = new OffscreenCanvas(image.width, image.height).getContext('2d')
+      copy.drawImage(image, 0, 0)
+      const marks = [...document.querySelectorAll('#legend .marks span')].map((m) => [Number(m.dataset.value), parseFloat(m.style.bottom)])
+      return { legend: [...legend].slice(0, 3), seen: [...copy.getImageData(x, y, 1, 1).data].slice(0, 3), marks, low, high }
+    }, [450, 640, found.illuminance])
+    colours.legend.forEach((v, c) => near(colours.seen[c], v, 4, 'colour of the legend'))
+    for (const [value, bottom] of colours.marks) near(bottom, 100 * (value - colours.low) / (colours.high - colours.low), 0.1)
+    await page.fill('#range-high', '2')
+    await page.press('#range-high', 'Enter')
+    assert.deepEqual(await page.evaluate(() => window.exitance.viewer.stage.uniforms.range.value.toArray()), [0, 2])
+  }))
+
+  it('a section shows what is behind', () => visit('cornell.glb', async (page) => {
+    const front = await reading(page, 560, 560)
+    await page.selectOption('#section-axis', { label: 'cut along' })
+    const behind = await reading(page, 560, 560)
+    assert.ok(behind.distance > front.distance || behind.surface !== front.surface)
+  }))
+})
+
+describe('movement', () => {
+  it('the keys of radview', () => visit('cornell.glb', async (page) => {
+    await page.locator('#view').focus()
+    const start = await pose(page), at = await place(page)
+    const after = async (key) => {
+      await page.keyboard.press(key)
+      return pose(page)
+    }
+    near((await after('ArrowLeft')).azimuth - start.azimuth, -1, 1e-6, 'azimuth by 1 degree')
+    near((await after('ArrowRight')).azimuth - start.azimuth, 0, 1e-6)
+    near(Math.abs((await after('ArrowUp')).elevation - start.elevation), 1, 1e-6, 'elevation by 1 degree')
+    near((await after('ArrowDown')).elevation - start.elevation, 0, 1e-6)
+    near((await after('z')).distance, 0.95 * start.distance, 1e-6, 'zoom in')
+    near((await after('x')).distance, start.distance, 1e-6, 'zoom out')
+    await page.keyboard.press('a')
+    const along = await place(page)
+    near(along.eye[2] - at.eye[2], 0.05 * start.distance, 1e-4, 'viewpoint along the sight')
+    near(along.look_at[2] - at.look_at[2], 0.05 * start.distance, 1e-4, 'reference along the sight')
+    await page.keyboard.press('s')
+    near((await place(page)).eye[2], at.eye[2], 1e-4)
+    await page.keyboard.press('z')
+    await page.keyboard.press('r')
+    await landed(page)
+    near((await pose(page)).distance, start.distance, 1e-6, 'reset')
+    await page.keyboard.press('F1')
+    assert.ok(await page.locator('#help').isVisible())
+    await page.keyboard.press('F2')
+    assert.ok(!(await page.locator('#help').isVisible()))
+  }))
+
+  it('a drag turns about the reference point, the wheel comes nearer', () => visit('cornell.glb', async (page) => {
+    const start = await pose(page), at = await place(page)
+    await page.mouse.move(400, 300)
+    await page.mouse.down()
+    await page.mouse.move(470, 300, { steps: 4 })
+    await page.mouse.up()
+    const dragged = await place(page)
+    near(Math.abs((await pose(page)).azimuth - start.azimuth), 18, 0.5, '70 of 700 pixels: a tenth of 180 degrees')
+    dragged.look_at.forEach((v, i) => near(v, at.look_at[i], 1e-4, 'reference'))
+    await page.mouse.wheel(0, -100)
+    await page.waitForFunction((d) => window.exitance.viewer.pose.distance < d, start.distance)
+    near((await pose(page)).distance, start.distance * Math.exp(-0.1), 1e-3)
+  }))
+
+  it('on foot: W walks, Shift runs, walls stop, feet find the ground', () => visit('room.glb', async (page) => {
+    await page.click('#walk')
+    await page.waitForFunction(() => Math.abs(window.exitance.viewer.pose.eye.y - window.exitance.viewer.movement.eyeHeight) < 0.01)
+    const walked = async (...keys) => {
+      const from = await place(page)
+      for (const key of keys) await page.keyboard.down(key)
+      await page.waitForTimeout(400)
+      for (const key of keys.reverse()) await page.keyboard.up(key)
+      const to = await place(page)
+      return Math.hypot(to.eye[0] - from.eye[0], to.eye[1] - from.eye[1])
+    }
+    const there = await walked('w')
+    assert.ok(there > 0.1, `walked ${there} m`)
+    await page.keyboard.down('w')
+    await page.keyboard.down('Shift')
+    await page.waitForTimeout(3000)
+    await page.keyboard.up('Shift')
+    await page.keyboard.up('w')
+    const { eye } = await place(page)
+    assert.ok(eye[0] > 0 && eye[0] < 4 && eye[1] > 0 && eye[1] < 3, `walls stop: ${eye}`)
+    near(eye[2], Math.min(1.6, 1.25), 0.02, 'height of the eyes: half of a room of 2.5 m')
+  }))
+
+  it('bookmarks fly there, a double click goes there, a link says where', () => visit('room.glb', async (page, server) => {
+    await page.click('#camera-1')
+    await landed(page)
+    const there = await place(page)
+    ;[3.5, 2.5, 1.6].forEach((v, i) => near(there.eye[i], v, 1e-4, 'eye of the second camera'))
+    await page.click('#panel-save summary')
+    await page.click('#link')
+    await page.waitForFunction(() => location.hash.includes('eye='))
+    const link = page.url()
+    await page.mouse.dblclick(300, 400)
+    await landed(page)
+    const moved = await place(page)
+    assert.ok(Math.hypot(...moved.eye.map((v, i) => v - there.eye[i])) > 0.5)
+    const other = await open(browser, link)
+    const again = await place(other.page)
+    ;[3.5, 2.5, 1.6].forEach((v, i) => near(again.eye[i], v, 1e-3, 'eye of the link'))
+    assert.ok(link.startsWith(server.url))
+    await other.page.context().close()
+  }))
+})
+
+describe('taking away', () => {
+  it('a picture of any size, and the mix as a model', () => visit('cornell.glb', async (page) => {
+    await page.click('#panel-save summary')
+    await page.fill('#picture-width', '320')
+    await page.press('#picture-width', 'Tab')
+    await page.fill('#picture-height', '200')
+    await page.press('#picture-height', 'Tab')
+    const [picture] = await Promise.all([page.waitForEvent('download'), page.click('#picture')])
+    const png = readFileSync(await picture.path())
+    assert.equal(png.readUInt32BE(16), 320)
+    assert.equal(png.readUInt32BE(20), 200)
+    const [model] = await Promise.all([page.waitForEvent('download'), page.click('#export')])
+    await model.saveAs(glb('mix.glb'))
+    assert.match(run('info', 'mix.glb'), /triangles|polygons/)
+  }))
+
+  it('one file that works from disk, without network', async () => {
+    run('view', 'cornell.glb', '--html', 'cornell.html')
+    const { page, faults } = await open(browser, pathToFileURL(glb('cornell.html')).href, { offline: true })
+    const found = await reading(page, 450, 640)
+    near(found.illuminance, probed('cornell.glb', found), 0.01 * found.illuminance)
+    assert.deepEqual(faults, [])
+    await page.context().close()
+  })
+})
+
+describe('looks', () => {
+  it('every control has a name and Tab finds it', () => visit('room.glb', async (page) => {
+    const nameless = await page.evaluate(() => [...document.querySelectorAll('button, input, select, canvas#view')].filter((e) =>
+      !(e.getAttribute('aria-label') || e.textContent.trim() || e.closest('label')?.textContent.trim())).map((e) => e.outerHTML))
+    assert.deepEqual(nameless, [])
+    await page.locator('#view').focus()
+    const stops = []
+    for (let i = 0; i < 8; ++i) {
+      await page.keyboard.press('Tab')
+      stops.push(await page.evaluate(() => document.activeElement.id || document.activeElement.tagName))
+    }
+    assert.ok(stops.includes('weight-0') && stops.includes('help-open'), stops.join(' '))
+  }))
+
+  it('numbers as German writes them, at the size of a phone', () => visit('room.glb', async (page) => {
+    assert.ok(!(await page.locator('#panel').isVisible()))
+    await page.mouse.move(180, 500)
+    await page.waitForSelector('#readout:not([hidden])')
+    assert.match(await page.textContent('#read-distance'), /^\d+,\d+ m$/)
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390)
+    await page.click('#panel-toggle')
+    assert.ok(await page.locator('#weight-0').isVisible())
+  }, { viewport: { width: 390, height: 780 }, locale: 'de-DE' }))
+})
+
+describe('live', () => {
+  it('a scene grows before one\'s eyes and ends as the file on disk', async () => {
+    const server = await serve(join(root, 'scenes/cornell.toml'), '--error', '0.02', '-o', 'grown.glb')
+    try {
+      const { page, faults } = await open(browser, server.url)
+      await page.evaluate(() => {
+        window.sizes = []
+        window.exitance.server.addEventListener('shown', () => window.sizes.push(window.exitance.viewer.solution.indices.length / 3))
+      })
+      await page.waitForFunction(() => document.getElementById('solving').hidden, null, { timeout: 120000 })
+      const last = await page.evaluate(() => new Promise((resolve) => {
+        const done = () => resolve({ shown: window.exitance.server.shown, sizes: window.sizes, radiance: window.exitance.viewer.solution.exitance[0][0] })
+        setTimeout(done, 1500)
+      }))
+      assert.ok(last.shown >= 3, `states shown: ${last.shown}`)
+      assert.deepEqual(faults, [])
+      const found = await reading(page, 450, 640)
+      near(found.illuminance, probed('grown.glb', found), 0.01 * found.illuminance)
+      await page.context().close()
+    } finally {
+      await server.stop()
+    }
+  })
+})
+
+assert.ok(program, 'EXITANCE_PROGRAM names the program')

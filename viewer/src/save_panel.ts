@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one takes away: a picture, the mix of lights as a model, a link to this place.
+
+import { button, element, numberField, row, section } from './elements'
+import { exportMix } from './export_glb'
+import type { Viewer } from './viewer'
+
+function download(blob: Blob, name: string): void {
+  const link = element('a', { href: URL.createObjectURL(blob), download: name })
+  link.click()
+  setTimeout(() => URL.revokeObjectURL(link.href), 10000)
+}
+
+/** The address of this page with where one stands, and the brightness of the lights. */
+export function linkHere(viewer: Viewer): string {
+  const { eye, look_at, fov } = viewer.place()
+  const numbers = (values: number[]) => values.map((v) => Number(v.toFixed(4))).join(',')
+  const here = new URLSearchParams({ eye: numbers(eye), at: numbers(look_at), fov: String(Number(fov.toFixed(2))),
+    mode: viewer.movement.mode, light: numbers(viewer.mix.groups.map((g) => (g.mute ? 0 : g.weight))) })
+  return `${location.href.split('#')[0]}#${here.toString().replaceAll('%2C', ',')}`
+}
+
+/** Goes where such a link leads; whether it said where. */
+export function followLink(viewer: Viewer, hash: string): boolean {
+  const here = new URLSearchParams(hash.replace(/^#/, ''))
+  const numbers = (name: string) => (here.get(name) ?? '').split(',').map(Number)
+  const [eye, at, fov, light] = [numbers('eye'), numbers('at'), Number(here.get('fov')), numbers('light')]
+  if (light.length === viewer.mix.groups.length && light.every((w) => Number.isFinite(w) && w >= 0) && here.has('light'))
+    light.forEach((weight, g) => viewer.mix.set(g, { weight }))
+  if (here.get('mode') === 'walk') viewer.movement.setMode('walk')
+  const valid = [...eye, ...at, fov].every(Number.isFinite) && eye.length === 3 && at.length === 3 && fov > 1 && fov < 179
+  if (valid) viewer.movement.pose = viewer.poseAt(eye, at, fov)
+  return valid
+}
+
+export function savePanel(viewer: Viewer): HTMLElement {
+  const name = (viewer.solution.title || 'exitance').replace(/[^\w-]+/g, '_').toLowerCase()
+  let width = 1920, height = 1080
+  const limited = (v: number) => Math.round(Math.min(8192, Math.max(16, v)))
+  const w = numberField('Width of the picture in pixels', 'picture-width', width, (v) => (width = limited(v)))
+  const h = numberField('Height of the picture in pixels', 'picture-height', height, (v) => (height = limited(v)))
+  const picture = button('Picture', async () => download(await viewer.picture(width, height), `${name}.png`), { id: 'picture' })
+  const mix = button('Model with this light', () => download(exportMix(viewer), `${name}_lit.glb`),
+    { id: 'export', title: 'A .glb with plain vertex colours' })
+  const link = button('Link to here', async () => {
+    const url = linkHere(viewer)
+    history.replaceState(null, '', url.slice(url.indexOf('#')))
+    try {
+      await navigator.clipboard.writeText(url)
+      link.textContent = 'Copied'
+    } catch {
+      link.textContent = 'In the address bar'
+    }
+    setTimeout(() => (link.textContent = 'Link to here'), 1500)
+  }, { id: 'link' })
+  return section('Save and share', 'panel-save', false,
+    row(w, element('span', { class: 'faint' }, '×'), h, picture), element('div', { class: 'buttons' }, mix, link))
+}

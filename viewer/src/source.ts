@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the solution comes from: the program that serves this page, or the page itself.
+
+import { byId, element } from './elements'
+import { figures, percent } from './numbers'
+import { readSolution, type Solution } from './solution'
+
+interface Progress { phase: string; seconds: number; done: number; paused: boolean; fraction_left: number; vertices: number; shots: number }
+
+/** The solution that the page carries inside, if it does. */
+export function embeddedSolution(): Solution | null {
+  const script = document.getElementById('solution')
+  if (!script) return null
+  const text = atob(script.textContent!)
+  script.remove()
+  const bytes = new Uint8Array(text.length)
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i)
+  return readSolution(bytes.buffer)
+}
+
+async function fetchSolution(): Promise<Solution> {
+  const answer = await fetch('solution.glb')
+  if (!answer.ok) throw Error(`The program answers ${answer.status}.`)
+  return readSolution(await answer.arrayBuffer())
+}
+
+export class Server extends EventTarget {
+  /** Revisions of the solution that have been shown. */
+  shown = 0
+  private events = new EventSource('events')
+  private busy = false
+  private wanted = 0
+  private paused = false
+
+  constructor(private show: (solution: Solution) => Promise<void>, private fail: (message: string) => void) {
+    super()
+    this.events.addEventListener('solution', (event) => {
+      this.wanted = Number(event.data)
+      void this.load()
+    })
+    this.events.addEventListener('progress', (event) => this.showProgress(JSON.parse(event.data) as Progress))
+    byId('solving-pause').addEventListener('click', () => void this.command(this.paused ? 'resume' : 'pause'))
+    byId('solving-stop').addEventListener('click', () => void this.command('stop'))
+  }
+
+  /** One after the other; what is overtaken meanwhile is skipped. */
+  private async load(): Promise<void> {
+    if (this.busy) return
+    this.busy = true
+    try {
+      while (this.shown !== this.wanted) {
+        const revision = this.wanted
+        await this.show(await fetchSolution())
+        this.shown = revision
+        this.dispatchEvent(new Event('shown'))
+      }
+    } catch (error) {
+      this.fail(error instanceof Error ? error.message : String(error))
+    }
+    this.busy = false
+  }
+
+  private showProgress(progress: Progress): void {
+    this.paused = progress.paused
+    byId('solving').hidden = progress.phase === 'done'
+    byId<HTMLProgressElement>('solving-bar').value = progress.done
+    byId('solving-pause').textContent = progress.paused ? 'Resume' : 'Pause'
+    byId('solving-text').replaceChildren(element('span', {}, progress.paused ? 'paused' : percent(progress.done)),
+      element('span', { class: 'faint' }, ` unshot ${percent(progress.fraction_left)} · ${figures(progress.vertices)} vertices`))
+  }
+
+  private async command(command: string): Promise<void> {
+    await fetch('command', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ command }) })
+  }
+
+  /** The program ends when nobody listens any more. */
+  leave(): void {
+    this.events.close()
+  }
+}
