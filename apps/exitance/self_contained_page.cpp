@@ -9,6 +9,8 @@
 #include <string_view>
 
 #include "exitance/run/error.h"
+#include "exitance/solution/file.h"
+#include "grid_readings.h"
 #include "viewer_assets.h"
 
 namespace exitance::cli {
@@ -83,7 +85,10 @@ void write_self_contained_page(std::ostream& out, const std::filesystem::path& s
     const auto end = page.rfind("</body>");
     out << page.substr(0, end) << "<script type=\"application/octet-stream\" id=\"solution\">";
     write_base64(out, in);
-    out << "</script>" << page.substr(end);
+    out << "</script>";
+    // Numbers only: nothing that could end a script.
+    out << "<script type=\"application/json\" id=\"grids\">"
+        << grid_readings(read_solution(solution)) << "</script>" << page.substr(end);
 }
 
 }  // namespace exitance::cli

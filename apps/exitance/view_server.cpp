@@ -21,6 +21,8 @@
 
 #include "exitance/run/error.h"
 #include "exitance/run/progress.h"
+#include "exitance/solution/file.h"
+#include "grid_readings.h"
 #include "viewer_assets.h"
 
 namespace exitance::cli {
@@ -70,6 +72,8 @@ class OpenFile {
     OpenFile& operator=(const OpenFile&) = delete;
 
     std::size_t size() const { return size_; }
+    /// Leads to the file even when its own name is gone.
+    std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
     /// Sends some bytes from `offset` on, at most `length`; false if there are none.
     bool send(std::size_t offset, std::size_t length, httplib::DataSink& sink) const {
         std::vector<char> block(std::min<std::size_t>(length, 1u << 18));
@@ -94,6 +98,9 @@ struct ViewServer::State {
     mutable std::mutex mutex;
     std::condition_variable news;
     std::shared_ptr<const OpenFile> solution;
+    std::mutex reading_grids;
+    std::shared_ptr<const OpenFile> grids_of;  ///< the solution that `grids` were read from
+    std::string grids;
     std::uint64_t revision = 0;  ///< of the solution; 0 = none yet
     std::uint64_t told = 0;      ///< how often progress was told
     std::string progress;
@@ -106,6 +113,7 @@ struct ViewServer::State {
                                           httplib::Response& response) const;
     void serve_assets();
     void serve_solution();
+    void serve_grids();
     void serve_events();
     void serve_commands();
     bool send_news(std::uint64_t& seen_revision, std::uint64_t& seen_told, httplib::DataSink& sink);
@@ -169,6 +177,29 @@ void ViewServer::State::serve_solution() {
                 return file->send(offset, length, sink);
             });
     });
+}
+
+/// What the sensors read, computed when a page first asks.
+void ViewServer::State::serve_grids() {
+    server.Get("/" + token + "/grids\\.json",
+               [this](const httplib::Request&, httplib::Response& response) {
+                   const std::lock_guard one_at_a_time(reading_grids);
+                   std::shared_ptr<const OpenFile> file;
+                   {
+                       const std::lock_guard lock(mutex);
+                       file = solution;
+                   }
+                   if (!file) {
+                       response.status = 404;
+                       response.set_content("not solved yet\n", "text/plain");
+                       return;
+                   }
+                   if (file != grids_of) {
+                       grids = grid_readings(read_solution(file->path()));
+                       grids_of = file;
+                   }
+                   response.set_content(grids, "application/json");
+               });
 }
 
 /// Server-sent events: "solution" when there is a new one, "progress" while it is being made.
@@ -264,6 +295,7 @@ ViewServer::ViewServer(int port) : state_(std::make_unique<State>()) {
         });
     s.serve_assets();
     s.serve_solution();
+    s.serve_grids();
     s.serve_events();
     s.serve_commands();
 

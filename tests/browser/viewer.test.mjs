@@ -14,13 +14,13 @@ const glb = (name) => join(folder, name)
 let browser
 before(async () => {
   run('solve', join(root, 'scenes/cornell.toml'), '-o', 'cornell.glb', '--error', '0.1', '--quiet')
-  // Two lamps in groups of their own, a scene that dims one of them, z up, photometric.
+  // Two lamps in groups of their own, a scene that dims them, photometric.
   writeFileSync(glb('room.toml'), `title = "Two lamps"
 quantity = "photometric"
-up = "z"
 [[scenes]]
 name = "evening"
-groups = { left = 0.25, right = 0 }
+left = 0.25
+right = 0
 [[material]]
 name = "wall"
 reflectance = 0.6
@@ -34,18 +34,18 @@ exitance = [2000, 1000, 500]
 group = "right"
 [[camera]]
 name = "door"
-eye = [0.3, 0.3, 1.6]
-look_at = [3, 2, 1]
+eye = [0.3, 1.6, -0.3]
+look_at = [3, 1, -2]
 [[camera]]
 name = "window"
-eye = [3.5, 2.5, 1.6]
-look_at = [0, 0, 0.5]
+eye = [3.5, 1.6, -2.5]
+look_at = [0, 0.5, 0]
 ` + [['floor', 'wall', [[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]]], ['ceiling', 'wall', [[0, 0, 2.5], [0, 3, 2.5], [4, 3, 2.5], [4, 0, 2.5]]],
     ['south', 'wall', [[0, 0, 0], [0, 0, 2.5], [4, 0, 2.5], [4, 0, 0]]], ['north', 'wall', [[0, 3, 0], [4, 3, 0], [4, 3, 2.5], [0, 3, 2.5]]],
     ['west', 'wall', [[0, 0, 0], [0, 3, 0], [0, 3, 2.5], [0, 0, 2.5]]], ['east', 'wall', [[4, 0, 0], [4, 0, 2.5], [4, 3, 2.5], [4, 3, 0]]],
     ['lamp 1', 'left lamp', [[0.8, 1.2, 2.4], [0.8, 1.8, 2.4], [1.4, 1.8, 2.4], [1.4, 1.2, 2.4]]],
     ['lamp 2', 'right lamp', [[2.6, 1.2, 2.4], [2.6, 1.8, 2.4], [3.2, 1.8, 2.4], [3.2, 1.2, 2.4]]]]
-    .map(([name, material, corners]) => `[[polygon]]\nname = "${name}"\nmaterial = "${material}"\ncorners = ${JSON.stringify(corners)}\n`).join(''))
+    .map(([name, material, corners]) => `[[polygon]]\nname = "${name}"\nmaterial = "${material}"\ncorners = ${JSON.stringify(corners.map(([x, y, z]) => [x, z, -y]))}\n`).join(''))
   run('solve', 'room.toml', '-o', 'room.glb', '--error', '0.1', '--quiet')
   browser = await launch()
 })
@@ -180,6 +180,7 @@ describe('the instrument', () => {
   it('a section shows what is behind', () => visit('cornell.glb', async (page) => {
     const front = await reading(page, 560, 560)
     await page.selectOption('#section-axis', { label: 'cut along' })
+    await page.click('#section-flip')
     const behind = await reading(page, 560, 560)
     assert.ok(behind.distance > front.distance || behind.surface !== front.surface)
   }))
@@ -238,7 +239,7 @@ describe('movement', () => {
       await page.waitForTimeout(400)
       for (const key of keys.reverse()) await page.keyboard.up(key)
       const to = await place(page)
-      return Math.hypot(to.eye[0] - from.eye[0], to.eye[1] - from.eye[1])
+      return Math.hypot(to.eye[0] - from.eye[0], to.eye[2] - from.eye[2])
     }
     const there = await walked('w')
     assert.ok(there > 0.1, `walked ${there} m`)
@@ -248,15 +249,15 @@ describe('movement', () => {
     await page.keyboard.up('Shift')
     await page.keyboard.up('w')
     const { eye } = await place(page)
-    assert.ok(eye[0] > 0 && eye[0] < 4 && eye[1] > 0 && eye[1] < 3, `walls stop: ${eye}`)
-    near(eye[2], Math.min(1.6, 1.25), 0.02, 'height of the eyes: half of a room of 2.5 m')
+    assert.ok(eye[0] > 0 && eye[0] < 4 && eye[2] < 0 && eye[2] > -3, `walls stop: ${eye}`)
+    near(eye[1], Math.min(1.6, 1.25), 0.02, 'height of the eyes: half of a room of 2.5 m')
   }))
 
   it('bookmarks fly there, a double click goes there, a link says where', () => visit('room.glb', async (page, server) => {
     await page.click('#camera-1')
     await landed(page)
     const there = await place(page)
-    ;[3.5, 2.5, 1.6].forEach((v, i) => near(there.eye[i], v, 1e-4, 'eye of the second camera'))
+    ;[3.5, 1.6, -2.5].forEach((v, i) => near(there.eye[i], v, 1e-4, 'eye of the second camera'))
     await page.click('#panel-save summary')
     await page.click('#link')
     await page.waitForFunction(() => location.hash.includes('eye='))
@@ -267,7 +268,7 @@ describe('movement', () => {
     assert.ok(Math.hypot(...moved.eye.map((v, i) => v - there.eye[i])) > 0.5)
     const other = await open(browser, link)
     const again = await place(other.page)
-    ;[3.5, 2.5, 1.6].forEach((v, i) => near(again.eye[i], v, 1e-3, 'eye of the link'))
+    ;[3.5, 1.6, -2.5].forEach((v, i) => near(again.eye[i], v, 1e-3, 'eye of the link'))
     assert.ok(link.startsWith(server.url))
     await other.page.context().close()
   }))
@@ -306,7 +307,7 @@ describe('looks', () => {
     assert.deepEqual(nameless, [])
     await page.locator('#view').focus()
     const stops = []
-    for (let i = 0; i < 8; ++i) {
+    for (let i = 0; i < 12; ++i) {
       await page.keyboard.press('Tab')
       stops.push(await page.evaluate(() => document.activeElement.id || document.activeElement.tagName))
     }

@@ -3,16 +3,20 @@
 
 import './style.css'
 import { byId } from './elements'
+import { FloatingLabels } from './floating_labels'
 import { setUpHelp } from './help'
 import { setUpLegend } from './legend'
 import { lightPanel } from './light_panel'
 import { exposurePanel, lookPanel } from './look_panel'
+import { measurePanel } from './measure_panel'
 import type { Mode } from './movement'
 import { placesPanel } from './places_panel'
 import { setUpReadout } from './readout'
 import { followLink, savePanel } from './save_panel'
+import { SensorGrids } from './sensor_grids'
 import type { Solution } from './solution'
 import { embeddedSolution, Server } from './source'
+import { Tape } from './tape'
 import { Viewer } from './viewer'
 
 const message = (text: string) => (byId('message').textContent = text)
@@ -78,27 +82,30 @@ function setUpEscape(server: Server | null): void {
   })
 }
 
-function fillPanel(viewer: Viewer): void {
+function fillPanel(viewer: Viewer, grids: SensorGrids, tape: Tape): void {
   const open = new Map([...document.querySelectorAll('#panel details')].map((d) => [d.id, (d as HTMLDetailsElement).open]))
-  const panels = [lightPanel(viewer), exposurePanel(viewer), lookPanel(viewer), placesPanel(viewer), savePanel(viewer)]
+  const panels = [lightPanel(viewer), exposurePanel(viewer), lookPanel(viewer), placesPanel(viewer),
+    measurePanel(viewer, grids, tape), savePanel(viewer)]
   for (const panel of panels) (panel as HTMLDetailsElement).open = open.get(panel.id) ?? (panel as HTMLDetailsElement).open
   byId('panel-content').replaceChildren(...panels)
 }
 
 /** Rebuilt only where the groups, scenes or cameras are others than before. */
 function signature(solution: Solution): string {
-  return JSON.stringify([solution.groups, solution.scenes, solution.cameras, solution.quantity])
+  return JSON.stringify([solution.groups, solution.scenes, solution.cameras, solution.grids, solution.quantity])
 }
 
 function start(): void {
   const viewer = new Viewer(byId<HTMLCanvasElement>('view'))
+  const labels = new FloatingLabels(viewer, byId('labels'))
+  const grids = new SensorGrids(viewer, labels), tape = new Tape(viewer, labels)
   let shape = ''
   const show = async (solution: Solution) => {
     const first = shape === ''
     await viewer.show(solution)
     document.title = solution.title ? `${solution.title} – Exitance` : 'Exitance'
     byId('title').textContent = solution.title
-    if (signature(solution) !== shape) fillPanel(viewer)
+    if (signature(solution) !== shape) fillPanel(viewer, grids, tape)
     shape = signature(solution)
     if (!first) return
     followLink(viewer, location.hash)
@@ -118,7 +125,7 @@ function start(): void {
   setUpEscape(server)
   if (inside) show(inside).catch((error) => message(String(error)))
   // For tests and scripts: reads back what the page shows.
-  Object.assign(window, { exitance: { viewer, server } })
+  Object.assign(window, { exitance: { viewer, server, grids, tape } })
 }
 
 start()
