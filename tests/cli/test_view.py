@@ -14,6 +14,38 @@ from urllib.parse import urlsplit
 from program import BAD_INPUT, COULD_NOT_FINISH, WRONG_USE, ProgramTest, box, glb_json
 
 
+GRID = """quantity = "photometric"
+[[material]]
+name = "lamp"
+exitance = 100
+[[material]]
+name = "grey"
+reflectance = 0.5
+[[polygon]]
+material = "lamp"
+corners = [[0, 1, 0], [1, 1, 0], [1, 1, 1], [0, 1, 1]]
+[[polygon]]
+material = "grey"
+corners = [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 0, 0]]
+[[grid]]
+name = "few"
+origin = [0, 0, 0]
+u = [1, 0, 0]
+v = [0, 0, 1]
+normal = [0, 1, 0]
+columns = 2
+rows = 1
+[[grid]]
+name = "many"
+origin = [0, 0, 0]
+u = [1, 0, 0]
+v = [0, 0, 1]
+normal = [0, 1, 0]
+columns = 200
+rows = 200
+"""
+
+
 class Viewing(ProgramTest):
     """A server with a solved box."""
 
@@ -106,6 +138,27 @@ class Served(Viewing):
         self.assertEqual(self.port, free)
         self.refuse(COULD_NOT_FINISH, f"port {free} cannot be had", "view", "box.glb", "--no-open",
                     "--port", free)
+
+
+class Grids(Viewing):
+    def test_readings_of_every_group(self):
+        self.write("room.toml", GRID)
+        self.succeed("solve", "room.toml", "-o", "room.glb", "--error", "0.3", "--quiet")
+        self.view("room.glb")
+        status, headers, content = self.ask("grids.json")
+        self.assertEqual((status, headers["Content-Type"]), (200, "application/json"))
+        few, many = json.loads(content)
+        self.assertIsNone(many, "more sensors than a page wants")
+        self.assertEqual(len(few), 2 * 3)
+        self.write("points.csv", "x,y,z,nx,ny,nz\n0.25,0,0.5,0,1,0\n0.75,0,0.5,0,1,0\n")
+        probed = self.succeed("probe", "room.glb", "--points", "points.csv", "-o", "-").stdout
+        for k, line in enumerate(probed.splitlines()[1:]):
+            for mine, theirs in zip(few[3 * k:3 * k + 3], map(float, line.split(",")[6:])):
+                self.assertAlmostEqual(mine, theirs, delta=1e-4 * theirs)
+
+    def test_none(self):
+        self.view("box.glb")
+        self.assertEqual(self.ask("grids.json")[2], b"[]")
 
 
 class Refused(Viewing):

@@ -57,6 +57,6 @@ export function roundMarks(low: number, high: number, count: number): number[] {
   if (!(high > low)) return [low]
   const step = roundStep(high - low, count)
   const marks = []
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) marks.push(k * step)
+  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k) marks.push(k * step + 0)  // + 0: no -0
   return marks
 }

@@ -28,9 +28,10 @@ export class FloatingLabels {
 
   private follow(): void {
     const { canvas, stage } = this.viewer
-    for (const { at, node } of this.labels) {
+    for (const { at, node, owner } of this.labels) {
       const seen = at.clone().project(stage.camera)
       node.hidden = seen.z > 1 || Math.abs(seen.x) > 1.1 || Math.abs(seen.y) > 1.1
+        || (owner !== 'tape' && this.viewer.isHidden(at))
       const x = (seen.x + 1) / 2 * canvas.clientWidth, y = (1 - seen.y) / 2 * canvas.clientHeight
       node.style.transform = `translate(-50%, -50%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`
     }

@@ -74,7 +74,7 @@ export class Viewer extends EventTarget {
 
   private enter(): void {
     const size = this.box.getSize(new THREE.Vector3()), height = size.y, diagonal = size.length()
-    this.movement.eyeHeight = Math.min(1.6, 0.5 * height || 1.6)
+    this.movement.eyeHeight = Math.min(1.6, 0.65 * height || 1.6)
     this.movement.speed = diagonal > 3 ? 1.4 : 0.4 * diagonal
     const [camera] = this.solution.cameras
     const pose = camera ? poseOfCamera(camera, this.turn)
@@ -196,6 +196,12 @@ export class Viewer extends EventTarget {
   readAt(x: number, y: number): Reading | null {
     const place = this.pickAt(x, y)
     return place && read(this.solution, place, this.mix.factors(performance.now()))
+  }
+  /** Whether a surface stands between the eye and a place of the page's frame. */
+  isHidden(at: THREE.Vector3): boolean {
+    const way = at.clone().sub(this.pose.eye), distance = way.length()
+    const hit = this.pickRay(new THREE.Ray(this.pose.eye, way.divideScalar(distance)))
+    return hit !== null && hit.distance < 0.98 * distance
   }
   private hover(at: Viewer['pointer']): void {
     this.pointer = at
