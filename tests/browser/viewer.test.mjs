@@ -357,7 +357,7 @@ describe('exposure', () => {
       // Meters at another resolution, and the background differs: a few of 255 levels.
       assert.ok(apart < 4, `${curve}: ${apart} levels apart`)
     }
-  }, { viewport: { width: 300, height: 300 } }))
+  }, { viewport: { width: 300, height: 300 }, colorScheme: 'dark' }))
 
   it('automatic follows the light, a fixed EV does not', () => visit('room.glb', async (page) => {
     const ev = () => page.evaluate(() => {
