@@ -337,6 +337,98 @@ describe('movement', () => {
   }))
 })
 
+describe('every control', () => {
+  const uniform = (page, name) => page.evaluate((n) => window.exitance.viewer.stage.uniforms[n].value, name)
+
+  it('looks, mesh, contours, range', () => visit('cornell.glb', async (page) => {
+    for (const [look, number] of [['exitance', 2], ['normals', 3], ['reflectance', 4], ['picture', 0]]) {
+      await page.selectOption('#look', look)
+      assert.equal(await uniform(page, 'look'), number)
+    }
+    await page.selectOption('#tone', 'filmic')
+    assert.equal(await uniform(page, 'toneCurve'), 2)
+    await page.click('#contours')
+    const step = Number(await page.inputValue('#contour-step'))
+    assert.ok(step > 0)
+    assert.equal(await uniform(page, 'contour'), step)
+    await page.click('#contours')
+    assert.equal(await uniform(page, 'contour'), 0)
+    const picture = () => page.evaluate(async () => {
+      const { viewer } = window.exitance
+      viewer.settle()
+      const text = await (await viewer.picture(100, 100)).arrayBuffer()
+      return new Uint8Array(text).reduce((sum, v) => (sum * 31 + v) % 1000003, 7)
+    })
+    const plain = await picture()
+    await page.click('#wires')
+    assert.notEqual(await picture(), plain, 'the mesh is drawn')
+    await page.click('#wires')
+    assert.equal(await picture(), plain)
+    await page.selectOption('#look', 'illuminance')
+    await page.fill('#range-low', '0.5')
+    await page.press('#range-low', 'Enter')
+    assert.equal((await page.evaluate(() => window.exitance.viewer.range)).low, 0.5)
+    await page.click('#range-fit')
+    assert.deepEqual(await page.evaluate(() => [window.exitance.viewer.range.low, window.exitance.viewer.range.automatic]), [0, true])
+  }))
+
+  it('reflectance and normals are those of the scene', () => visit('cornell.glb', async (page) => {
+    const pixel = (look) => page.evaluate(async (name) => {
+      const { viewer } = window.exitance
+      viewer.setLook(name)
+      const context = new OffscreenCanvas(900, 700).getContext('2d')
+      context.drawImage(await createImageBitmap(await viewer.picture(900, 700)), 0, 0)
+      return [...context.getImageData(250, 665, 1, 1).data].slice(0, 3)
+    }, look)
+    assert.equal((await reading(page, 250, 665)).surface, 'floor')
+    const encoded = (v) => 255 * (1.055 * v ** (1 / 2.4) - 0.055)
+    ;(await pixel('reflectance')).forEach((v, c) => near(v, encoded([0.725, 0.71, 0.68][c]), 2, 'white paint'))
+    ;(await pixel('normals')).forEach((v, c) => near(v, [127.5, 255, 127.5][c], 2, 'up'))
+  }))
+
+  it('sliding, rising, automatic', () => visit('room.glb', async (page) => {
+    const at = await place(page)
+    await page.mouse.move(400, 300)
+    await page.mouse.down({ button: 'right' })
+    await page.mouse.move(440, 300, { steps: 3 })
+    await page.mouse.up({ button: 'right' })
+    const slid = await place(page)
+    const by = slid.eye.map((v, i) => v - at.eye[i])
+    assert.ok(Math.hypot(...by) > 0.01)
+    slid.look_at.forEach((v, i) => near(v - at.look_at[i], by[i], 1e-4, 'the reference slides along'))
+    const before = await pose(page)
+    await page.click('#automatic')
+    await page.waitForFunction((a) => Math.abs(window.exitance.viewer.pose.azimuth * 180 / Math.PI - a) > 2, before.azimuth)
+    await page.click('#automatic')
+    await page.click('#walk')
+    await page.click('#gravity')
+    await page.locator('#view').focus()
+    const low = (await place(page)).eye[1]
+    await page.keyboard.down('e')
+    await page.waitForFunction((y) => window.exitance.viewer.pose.eye.y > y + 0.1, low)
+    await page.keyboard.up('e')
+    await page.click('#bookmark')
+    await page.click('#reset')
+    await landed(page)
+    await page.click('#bookmarks button')
+    await landed(page)
+    assert.ok((await place(page)).eye[1] > low + 0.09)
+  }))
+
+  it('Esc twice ends the visit and the program', async () => {
+    const server = await serve('cornell.glb')
+    const { page, faults } = await open(browser, server.url)
+    await page.locator('#view').focus()
+    await page.keyboard.press('Escape')
+    await page.keyboard.press('Escape')
+    assert.match(await page.textContent('#message'), /ended/)
+    assert.equal(await server.ended, 0)
+    assert.ok(await reading(page, 450, 640), 'the page goes on')
+    assert.deepEqual(faults, [])
+    await page.context().close()
+  })
+})
+
 describe('exposure', () => {
   it('shows what exitance render shows, by each tone curve', () => visit('cornell.glb', async (page) => {
     for (const curve of ['reinhard', 'filmic', 'linear']) {

@@ -30,7 +30,8 @@ export async function serve(...words) {
     process.stdout.once('data', (text) => resolve(String(text).trim()))
     process.once('exit', (code) => reject(Error(`view ended with ${code}`)))
   })
-  return { url, stop: () => new Promise((resolve) => {
+  const ended = new Promise((resolve) => process.once('exit', resolve))
+  return { url, ended, stop: () => new Promise((resolve) => {
     if (process.exitCode !== null) resolve(process.exitCode)
     process.once('exit', resolve)
     process.kill('SIGINT')

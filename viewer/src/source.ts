@@ -39,6 +39,12 @@ export class Server extends EventTarget {
       void this.load()
     })
     this.events.addEventListener('progress', (event) => this.showProgress(JSON.parse(event.data) as Progress))
+    // The program has ended: what is here stays usable.
+    this.events.addEventListener('error', () => {
+      this.events.close()
+      byId('solving').hidden = true
+      if (!this.shown) this.fail('The program has ended before there was anything to show.')
+    })
     byId('solving-pause').addEventListener('click', () => void this.command(this.paused ? 'resume' : 'pause'))
     byId('solving-stop').addEventListener('click', () => void this.command('stop'))
   }
