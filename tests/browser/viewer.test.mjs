@@ -545,19 +545,22 @@ describe('size', () => {
 
 describe('live', () => {
   it('a scene grows before one\'s eyes and ends as the file on disk', async () => {
-    const server = await serve(join(root, 'scenes/cornell.toml'), '--error', '0.02', '-o', 'grown.glb')
+    const server = await serve(join(root, 'scenes/cornell.toml'), '--error', '0.002', '-o', 'grown.glb')
     try {
       const { page, faults } = await open(browser, server.url)
       await page.evaluate(() => {
         window.sizes = []
         window.exitance.server.addEventListener('shown', () => window.sizes.push(window.exitance.viewer.solution.indices.length / 3))
       })
+      await page.waitForFunction(() => window.exitance.server.shown >= 3, null, { timeout: 120000 })
+      await page.click('#solving-stop')
       await page.waitForFunction(() => document.getElementById('solving').hidden, null, { timeout: 120000 })
       const last = await page.evaluate(() => new Promise((resolve) => {
         const done = () => resolve({ shown: window.exitance.server.shown, sizes: window.sizes, radiance: window.exitance.viewer.solution.exitance[0][0] })
         setTimeout(done, 1500)
       }))
       assert.ok(last.shown >= 3, `states shown: ${last.shown}`)
+      assert.ok(last.sizes.every((size, i) => i === 0 || size >= last.sizes[i - 1] || i === last.sizes.length - 1), `${last.sizes}`)
       assert.deepEqual(faults, [])
       const found = await reading(page, 450, 640)
       near(found.illuminance, probed('grown.glb', found), 0.01 * found.illuminance)
