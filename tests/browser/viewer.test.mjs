@@ -545,7 +545,7 @@ describe('size', () => {
 
 describe('live', () => {
   it('a scene grows before one\'s eyes and ends as the file on disk', async () => {
-    const server = await serve(join(root, 'scenes/cornell.toml'), '--error', '0.002', '-o', 'grown.glb')
+    const server = await serve(join(root, 'scenes/cornell.toml'), '--error', '0.007', '-o', 'grown.glb')
     try {
       const { page, faults } = await open(browser, server.url)
       await page.evaluate(() => {
@@ -553,7 +553,7 @@ describe('live', () => {
         window.exitance.server.addEventListener('shown', () => window.sizes.push(window.exitance.viewer.solution.indices.length / 3))
       })
       await page.waitForFunction(() => window.exitance.server.shown >= 3, null, { timeout: 120000 })
-      await page.click('#solving-stop')
+      await page.click('#solving-stop', { timeout: 5000 }).catch(() => {}) // or it is done already
       await page.waitForFunction(() => document.getElementById('solving').hidden, null, { timeout: 120000 })
       const last = await page.evaluate(() => new Promise((resolve) => {
         const done = () => resolve({ shown: window.exitance.server.shown, sizes: window.sizes, radiance: window.exitance.viewer.solution.exitance[0][0] })
