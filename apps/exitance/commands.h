@@ -15,6 +15,7 @@ void add_info(CLI::App& app);
 void add_manual(CLI::App& app);
 void add_prorad(CLI::App& app);
 void add_probe(CLI::App& app);
+void add_radview(CLI::App& app);  ///< as add_view
 void add_render(CLI::App& app);
 void add_solve(CLI::App& app);
 void add_view(CLI::App& app);  ///< not in programs that were built without EXITANCE_VIEWER

@@ -52,7 +52,8 @@ std::string usage(const CLI::App& command) {
     std::string out = fmt::format("{} {}", command.get_parent()->get_name(), command.get_name());
     for (const CLI::Option* option : command.get_options()) {
         if (option->nonpositional() && !option->get_required()) continue;
-        out += " " + option_name(*option);
+        const bool may_lack = !option->nonpositional() && !option->get_required();
+        out += may_lack ? fmt::format(" [{}]", option_name(*option)) : " " + option_name(*option);
     }
     return out + " [options]";
 }

@@ -37,7 +37,7 @@ std::string told(const Progress& progress, bool paused) {
 
 Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer& server,
                     const std::filesystem::path& file, const Observer& observe,
-                    const Cancel& interrupt, bool keep) {
+                    const Cancel& interrupt, bool keep, const Snapshots& snapshots) {
     constexpr double patience = 3;  // seconds in which a page that was reloaded is back
     Cancel cancel;
     std::atomic<bool> paused = false;
@@ -63,16 +63,16 @@ Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer&
         last_told = since_told.seconds();
         server.tell_progress(told(progress, false));
     };
-    const auto take = [&](const Solution& so_far) {
+    Snapshots shown = snapshots;
+    shown.take = [&](Solution so_far) {
         const Stopwatch clock;
         write_solution(so_far, file);
         server.show(file);
         pace.took(clock.seconds());
+        if (snapshots.take) snapshots.take(std::move(so_far));
     };
-    const Snapshots snapshots{.ambient = true, .take = take, .wanted = [&](const Progress&) {
-                                  return server.has_pages() && pace.due();
-                              }};
-    Solution solution = light(scene, options, watch, &cancel, snapshots);
+    shown.wanted = [&](const Progress&) { return server.has_pages() && pace.due(); };
+    Solution solution = light(scene, options, watch, &cancel, shown);
     server.on_command({});
     write_solution(solution, file);
     server.show(file);

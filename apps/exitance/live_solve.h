@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "exitance/pipeline.h"
 #include "exitance/run/progress.h"
 #include "exitance/scene/scene.h"
 #include "exitance/solution/solution.h"
@@ -14,9 +15,10 @@ namespace exitance::cli {
 
 /// Solves `scene`, shows what there is so far through `server` as `file`, again and again, and at
 /// last the solution itself. A page may pause, resume and stop it; so do `interrupt` and, unless
-/// `keep`, the closing of the last page stop it. Returns the solution.
+/// `keep`, the closing of the last page stop it. What `snapshots` ask for is done besides. Returns
+/// the solution.
 Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer& server,
                     const std::filesystem::path& file, const Observer& observe,
-                    const Cancel& interrupt, bool keep);
+                    const Cancel& interrupt, bool keep, const Snapshots& snapshots);
 
 }  // namespace exitance::cli

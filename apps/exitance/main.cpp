@@ -42,6 +42,9 @@ void add_commands(CLI::App& app) {
     exitance::cli::add_convert(app);
     exitance::cli::add_info(app);
     exitance::cli::add_prorad(app);
+#ifdef EXITANCE_VIEWER
+    exitance::cli::add_radview(app);
+#endif
     exitance::cli::add_manual(app);
 }
 

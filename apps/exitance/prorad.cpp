@@ -20,6 +20,10 @@
 #include "output_path.h"
 #include "progress_bar.h"
 #include "summary.h"
+#ifdef EXITANCE_VIEWER
+#include "temporary_folder.h"
+#include "walkthrough.h"
+#endif
 
 namespace exitance::cli {
 
@@ -41,17 +45,26 @@ class ProradCommand {
         command.add_flag("-n", picture_.normals, "draw normals, with -w")->needs(wireframe);
         command.add_flag("-t", no_occlusion_,
                          "no occlusion test: everything sees everything, as --no-occlusion");
-        command
-            .add_option("-s", every_,
-                        "show while solving: a numbered picture after every so many shots")
-            ->type_name("shots")
+        CLI::Option* pictures = command.add_option("--pictures", every_,
+                                                   "a numbered picture after every so many shots");
+        pictures->type_name("shots")
             ->check(CLI::PositiveNumber.description(""))
             ->expected(0, 1)
             ->default_str("16");
+#ifdef EXITANCE_VIEWER
+        command.add_flag("-s", show_, "show while solving: a walk through it in the browser")
+            ->excludes(pictures);
+        command
+            .add_flag_callback(
+                "--no-open", [this] { walking_.open = false; },
+                "with -s: open no browser, the address is printed")
+            ->needs("-s");
+#endif
         reporting_.add_to(command);
         command.footer(
             "The picture is outfile.png, or named after the geometry in the current folder;\n"
-            "with -s also …-0001.png and so on, the last one at the end. The display file's\n"
+            "with --pictures also …-0001.png and so on, the last one at the end. The display "
+            "file's\n"
             "threshold ends the work: 1000 × energy of the next patch to shoot / emitted energy.\n"
             "\n"
             "Example:\n"
@@ -73,21 +86,37 @@ class ProradCommand {
         const Interrupt interrupt;
         const Stopwatch watch;
         int number = 0;
-        Snapshots snapshots{every_, display.ambient.value_or(false), {}};
+        Snapshots snapshots{.every = every_, .ambient = display.ambient.value_or(false)};
         std::optional<Solution> latest;
         snapshots.take = [&](Solution so_far) {
             if (every_) draw(so_far, display, numbered(picture, ++number));
             latest = std::move(so_far);
         };
         apply(display);
+        const auto finish = [&](const Solution& solution) {
+            draw(*latest, display, picture);
+            if (output_) write_solution(solution, *output_);
+            if (reporting_.quiet) return;
+            if (interrupt.cancel().requested()) std::puts(stopped_early);
+            std::fputs(summary(solution, output_.value_or(picture), watch.seconds()).c_str(),
+                       stdout);
+            std::fflush(stdout);
+        };
+#ifdef EXITANCE_VIEWER
+        if (show_) {
+            walking_.solve_to_end = true;
+            const TemporaryFolder folder;
+            Walkthrough walk(walking_, reporting_);
+            finish(walk.light(scene, options_, folder.path() / "solution.glb", interrupt.cancel(),
+                              snapshots));
+            walk.stay_if_watched(interrupt.cancel());
+            return;
+        }
+#endif
         const Solution solution =
             light(scene, options_, make_observer(reporting_), &interrupt.cancel(), snapshots);
         clear_bar(reporting_);
-        draw(*latest, display, picture);
-        if (output_) write_solution(solution, *output_);
-        if (reporting_.quiet) return;
-        if (interrupt.cancel().requested()) std::puts(stopped_early);
-        std::fputs(summary(solution, output_.value_or(picture), watch.seconds()).c_str(), stdout);
+        finish(solution);
     }
 
   private:
@@ -99,6 +128,10 @@ class ProradCommand {
     bool no_occlusion_ = false;
     RenderOptions picture_;
     Reporting reporting_;
+#ifdef EXITANCE_VIEWER
+    bool show_ = false;
+    WalkthroughOptions walking_;
+#endif
 
     std::filesystem::path picture_name() const {
         return output_.value_or(geometry_.filename()).replace_extension(".png");

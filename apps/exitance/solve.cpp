@@ -18,6 +18,9 @@
 #include "output_path.h"
 #include "progress_bar.h"
 #include "summary.h"
+#ifdef EXITANCE_VIEWER
+#include "walkthrough.h"
+#endif
 
 namespace exitance::cli {
 
@@ -42,6 +45,17 @@ class SolveCommand {
         command.add_flag("--compare", compare_,
                          "solve by every solver and transport in turn and print a table instead: "
                          "work, time, residual, difference from the converged solution, memory");
+#ifdef EXITANCE_VIEWER
+        command
+            .add_flag("--view", view_,
+                      "show the solution in the browser while it grows, as exitance view does")
+            ->excludes("--compare");
+        command
+            .add_flag_callback(
+                "--no-open", [this] { walking_.open = false; },
+                "with --view: open no browser, the address is printed")
+            ->needs("--view");
+#endif
         reporting_.add_to(command);
         command.footer(
             "Examples:\n"
@@ -70,16 +84,15 @@ class SolveCommand {
             fmt::print("{}", compare_solvers(scene, options_, interrupt.cancel()));
             return;
         }
+#ifdef EXITANCE_VIEWER
+        if (view_) return solve_and_view(scene, interrupt.cancel());
+#endif
         const Stopwatch watch;
         const Solution solution =
             light(scene, options_, make_observer(reporting_), &interrupt.cancel());
         clear_bar(reporting_);
         if (output_) write_solution(solution, *output_);
-        if (reporting_.quiet) return;
-        // A table on stdout stays one.
-        std::FILE* said = reporting_.log == "csv" ? stderr : stdout;
-        if (interrupt.cancel().requested()) fmt::print(said, "{}\n", stopped_early);
-        fmt::print(said, "{}", summary(solution, output_.value_or("not written"), watch.seconds()));
+        report(solution, watch, interrupt.cancel());
     }
 
   private:
@@ -91,6 +104,32 @@ class SolveCommand {
     std::optional<std::filesystem::path> output_;
     bool compare_ = false;
     Reporting reporting_;
+
+    void report(const Solution& solution, const Stopwatch& watch, const Cancel& interrupt) const {
+        if (reporting_.quiet) return;
+        // A table on stdout stays one.
+        std::FILE* said = reporting_.log == "csv" ? stderr : stdout;
+        if (interrupt.requested()) fmt::print(said, "{}\n", stopped_early);
+        fmt::print(said, "{}", summary(solution, output_.value_or("not written"), watch.seconds()));
+    }
+
+#ifdef EXITANCE_VIEWER
+    bool view_ = false;
+    WalkthroughOptions walking_;
+
+    void solve_and_view(const Scene& scene, const Cancel& interrupt) {
+        if (!output_) throw Error(Fault::wrong_use, "--view needs --output");
+        if (reporting_.log == "csv")
+            throw Error(Fault::wrong_use, "--view prints an address, --log csv a table");
+        walking_.solve_to_end = true;
+        Walkthrough walk(walking_, reporting_);
+        const Stopwatch watch;
+        report(walk.light(scene, options_, *output_, interrupt, {.ambient = true}), watch,
+               interrupt);
+        std::fflush(stdout);
+        walk.stay_if_watched(interrupt);
+    }
+#endif
 };
 
 }  // namespace

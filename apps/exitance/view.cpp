@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // exitance view: a walk through a solution in the browser, or through a scene while it is lit.
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <thread>
 
 #include "commands.h"
 #include "exitance/pipeline.h"
@@ -18,35 +13,17 @@
 #include "exitance/scene/read.h"
 #include "exitance/solution/file.h"
 #include "interrupt.h"
-#include "live_solve.h"
 #include "options_cli.h"
 #include "output_path.h"
 #include "progress_bar.h"
 #include "self_contained_page.h"
 #include "summary.h"
 #include "temporary_folder.h"
-#include "view_server.h"
+#include "walkthrough.h"
 
 namespace exitance::cli {
 
 namespace {
-
-/// Asks the desktop to open `url`; whether it found something to do that with.
-bool open_in_browser(const std::string& url) {
-    std::string opener = "xdg-open", address = url;
-    const std::array<char*, 3> arguments{opener.data(), address.data(), nullptr};
-    posix_spawn_file_actions_t quietly;
-    ::posix_spawn_file_actions_init(&quietly);
-    for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
-        ::posix_spawn_file_actions_addopen(&quietly, stream, "/dev/null", 1 /* O_WRONLY */, 0);
-    pid_t child = 0;
-    const bool started =
-        ::posix_spawnp(&child, opener.c_str(), &quietly, nullptr, arguments.data(), environ) == 0;
-    ::posix_spawn_file_actions_destroy(&quietly);
-    int status = 0;
-    return started && ::waitpid(child, &status, 0) == child && WIFEXITED(status) &&
-           WEXITSTATUS(status) == 0;
-}
 
 class ViewCommandLine {
   public:
@@ -62,15 +39,7 @@ class ViewCommandLine {
         html->type_name("file.html");
         command.add_option("--output,-o", output_, "keep the solution of a scene")
             ->type_name("file.glb");
-        command.add_option("--port", port_, "port on 127.0.0.1 (0: any that is free)")
-            ->type_name("number")
-            ->check(CLI::Range(0, 65535).description(""))
-            ->default_str("0")
-            ->excludes(html);
-        command.add_flag("--no-open", no_open_, "open no browser: the address is printed")
-            ->excludes(html);
-        command.add_flag("--keep", keep_, "stay when the last page closes, until Ctrl-C")
-            ->excludes(html);
+        walking_.add_to(command, html);
         reporting_.add_to(command);
         command.footer(
             "The page is served to browsers on this machine only, at an address that nobody can\n"
@@ -109,8 +78,7 @@ class ViewCommandLine {
     GivenOptions reading_;
     std::filesystem::path input_;
     std::optional<std::filesystem::path> html_, output_;
-    int port_ = 0;
-    bool no_open_ = false, keep_ = false;
+    WalkthroughOptions walking_;
     Reporting reporting_;
 
     void write_page(const std::filesystem::path& solution) const {
@@ -132,26 +100,16 @@ class ViewCommandLine {
     void serve(const Scene* scene) const {
         const TemporaryFolder folder;
         const Interrupt interrupt;
-        ViewServer server(port_);
-        if (!scene) server.show(input_);
-        // The address is for whoever waits for it, be it a person or a program.
-        fmt::print("{}\n", server.url());
-        std::fflush(stdout);
-        if (!no_open_ && !open_in_browser(server.url()) && !reporting_.quiet)
-            fmt::print(stderr, "exitance: no browser could be opened; open this address in one\n");
+        Walkthrough walk(walking_, reporting_, scene ? std::nullopt : std::optional(input_));
         if (scene) {
             const Stopwatch watch;
             const std::filesystem::path file = output_.value_or(folder.path() / "solution.glb");
             const Solution solution =
-                solve_live(*scene, options_, server, file, make_observer(reporting_),
-                           interrupt.cancel(), keep_);
-            clear_bar(reporting_);
+                walk.light(*scene, options_, file, interrupt.cancel(), {.ambient = true});
             if (output_ && !reporting_.quiet)
                 std::fputs(summary(solution, *output_, watch.seconds()).c_str(), stdout);
         }
-        constexpr double patience = 3;  // seconds in which a page that was reloaded is back
-        while (!interrupt.cancel().requested() && (keep_ || !server.deserted(patience)))
-            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        walk.stay(interrupt.cancel());
     }
 };
 

@@ -10,8 +10,10 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <condition_variable>
 #include <cstring>
+#include <deque>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "byte_delta.h"
 #include "exitance/run/error.h"
 #include "exitance/run/progress.h"
 #include "exitance/solution/file.h"
@@ -30,7 +33,9 @@ namespace exitance::cli {
 namespace {
 
 constexpr std::size_t most_body = 1024;
-constexpr std::size_t threads = 32;  // one per open page, and some for what they load
+constexpr std::size_t most_past = 3;         // revisions that deltas lead from
+constexpr std::size_t most_delta = 1 << 30;  // bytes of a file: both are held at once
+constexpr std::size_t threads = 32;          // one per open page, and some for what they load
 
 // Nothing but what this server sends is loaded, run or asked; nobody frames the page.
 constexpr const char* security_policy =
@@ -72,6 +77,18 @@ class OpenFile {
     OpenFile& operator=(const OpenFile&) = delete;
 
     std::size_t size() const { return size_; }
+    /// All of it.
+    std::vector<char> content() const {
+        std::vector<char> out(size_);
+        std::size_t at = 0;
+        while (at < size_) {
+            const ssize_t got =
+                ::pread(descriptor_, out.data() + at, size_ - at, static_cast<off_t>(at));
+            if (got <= 0) throw Error(Fault::could_not_finish, "cannot read the solution");
+            at += static_cast<std::size_t>(got);
+        }
+        return out;
+    }
     /// Leads to the file even when its own name is gone.
     std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
     /// Sends some bytes from `offset` on, at most `length`; false if there are none.
@@ -98,6 +115,8 @@ struct ViewServer::State {
     mutable std::mutex mutex;
     std::condition_variable news;
     std::shared_ptr<const OpenFile> solution;
+    /// Revisions before that of `solution`, the latest first, which pages may still show.
+    std::deque<std::shared_ptr<const OpenFile>> past;
     std::mutex reading_grids;
     std::shared_ptr<const OpenFile> grids_of;  ///< the solution that `grids` were read from
     std::string grids;
@@ -113,6 +132,7 @@ struct ViewServer::State {
                                           httplib::Response& response) const;
     void serve_assets();
     void serve_solution();
+    void serve_deltas();
     void serve_grids();
     void serve_events();
     void serve_commands();
@@ -171,11 +191,39 @@ void ViewServer::State::serve_solution() {
             response.set_content("not solved yet\n", "text/plain");
             return;
         }
+        response.set_header("ETag", fmt::format("\"{}\"", revision));
         response.set_content_provider(
             solution->size(), "model/gltf-binary",
             [file = solution](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
                 return file->send(offset, length, sink);
             });
+    });
+}
+
+/// "delta?from=REVISION": what changed from then to now (byte_delta.h); 410 where that is not known
+/// any more and the solution is to be had whole.
+void ViewServer::State::serve_deltas() {
+    server.Get("/" + token + "/delta", [this](const httplib::Request& request,
+                                              httplib::Response& response) {
+        const std::string text = request.get_param_value("from");
+        std::uint64_t from = 0, to = 0;
+        const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), from);
+        std::shared_ptr<const OpenFile> before, after;
+        {
+            const std::lock_guard lock(mutex);
+            to = revision, after = solution;
+            if (fault == std::errc() && end == text.data() + text.size() && from < to &&
+                to - from <= past.size())
+                before = past[to - from - 1];
+        }
+        if (!before || before->size() > most_delta || after->size() > most_delta) {
+            response.status = 410;
+            response.set_content("that revision is gone\n", "text/plain");
+            return;
+        }
+        response.set_content(
+            make_delta(before->content(), after->content(), static_cast<std::uint32_t>(to)),
+            "application/octet-stream");
     });
 }
 
@@ -295,6 +343,7 @@ ViewServer::ViewServer(int port) : state_(std::make_unique<State>()) {
         });
     s.serve_assets();
     s.serve_solution();
+    s.serve_deltas();
     s.serve_grids();
     s.serve_events();
     s.serve_commands();
@@ -333,6 +382,8 @@ void ViewServer::show(const std::filesystem::path& solution) {
     auto file = std::make_shared<const OpenFile>(solution);
     {
         const std::lock_guard lock(state_->mutex);
+        if (state_->solution) state_->past.push_front(std::move(state_->solution));
+        if (state_->past.size() > most_past) state_->past.pop_back();
         state_->solution = std::move(file);
         ++state_->revision;
     }

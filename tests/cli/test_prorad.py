@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """exitance prorad: the files and flags of the original system."""
+import signal
 import struct
 import unittest
+import urllib.request
 import zlib
+from urllib.parse import urlsplit
 
 from program import BAD_INPUT, COULD_NOT_FINISH, WRONG_USE, ProgramTest, box, extras
 
@@ -107,7 +110,7 @@ class Prorad(ProgramTest):
 
     def test_pictures_while_solving(self):
         self.display(threshold=2)
-        self.prorad("-s", "10", "-o", "lit.glb")
+        self.prorad("--pictures", "10", "-o", "lit.glb")
         shots = extras(self.folder / "lit.glb")["counters"]["shots"]
         numbered = [n for n in self.names() if n.startswith("lit-")]
         self.assertEqual(numbered, [f"lit-{i + 1:04}.png" for i in range(len(numbered))])
@@ -116,6 +119,23 @@ class Prorad(ProgramTest):
                          (self.folder / "lit.png").read_bytes())
         self.assertNotEqual((self.folder / numbered[0]).read_bytes(),
                             (self.folder / numbered[-1]).read_bytes())
+
+    def test_shown_while_solving(self):
+        """What is written is the same as without anybody watching."""
+        self.prorad("-o", "lit.glb")
+        process = self.start("prorad", "-g", "box.geom", "-d", "box.display", "--error", "0.2",
+                             "-o", "shown.glb", "-s", "--no-open", "--log", "json")
+        self.addCleanup(process.kill)
+        address = urlsplit(process.stdout.readline().strip())
+        self.assertRegex(process.stdout.readline(), r"^shown\.glb: \d+ vertices")
+        with urllib.request.urlopen(address.geturl() + "solution.glb", timeout=20) as answer:
+            self.assertEqual(answer.read(), (self.folder / "lit.glb").read_bytes())
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=20)
+        self.assertEqual(process.returncode, 0)
+        for kind in ("glb", "png"):
+            self.assertEqual((self.folder / f"shown.{kind}").read_bytes(),
+                             (self.folder / f"lit.{kind}").read_bytes())
 
     def test_ambient_only_changes_the_picture(self):
         files = []
@@ -140,7 +160,9 @@ class Prorad(ProgramTest):
                  "box.geom"),
                 (WRONG_USE, "picture's name", "-g", "box.geom", "-d", "box.display", "-o",
                  "lit.png"),
-                (WRONG_USE, "-s", "-g", "box.geom", "-d", "box.display", "-s", "0"),
+                (WRONG_USE, "--pictures", "-g", "box.geom", "-d", "box.display", "--pictures",
+                 "0"),
+                (WRONG_USE, "excludes", "-g", "box.geom", "-d", "box.display", "-s", "--pictures"),
                 (COULD_NOT_FINISH, "cannot write", "-g", "box.geom", "-d", "box.display", "-o",
                  "nowhere/lit.glb")]:
             with self.subTest(arguments=arguments):

@@ -6,12 +6,13 @@ import json
 import re
 import signal
 import socket
+import struct
 import time
 import unittest
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from program import BAD_INPUT, COULD_NOT_FINISH, WRONG_USE, ProgramTest, box, glb_json
+from program import BAD_INPUT, COULD_NOT_FINISH, WRONG_USE, ProgramTest, box, extras, glb_json
 
 
 GRID = """quantity = "photometric"
@@ -55,7 +56,10 @@ class Viewing(ProgramTest):
         self.succeed("solve", "box.geom", "-o", "box.glb", "--error", "0.3", "--quiet")
 
     def view(self, *arguments):
-        process = self.start("view", *arguments, "--no-open", "--quiet")
+        return self.serve("view", *arguments, "--no-open", "--quiet")
+
+    def serve(self, *arguments):
+        process = self.start(*arguments)
         self.addCleanup(process.communicate)
         self.addCleanup(process.kill)
         address = urlsplit(process.stdout.readline().strip())
@@ -307,6 +311,76 @@ class Live(Viewing):
         self.assertEqual(self.ends(process), 0)
         self.succeed("info", "room.glb")
 
+    def test_what_changed_leads_from_each_revision_to_the_next(self):
+        """What a page is told to copy and to add gives the file, byte for byte."""
+        self.write("room.geom", box(patches=8))
+        process = self.view("room.geom", "-o", "room.glb", "--error", "0.003")
+        held, revision, sizes, page = None, 0, [], self.listen()
+        for event, data in self.events(page):
+            if event == "progress":
+                if data["phase"] == "done":
+                    break
+                if len(sizes) == 4:
+                    self.ask("command", "POST", '{"command": "stop"}')
+            elif held is None:
+                _, headers, held = self.ask("solution.glb")
+                revision = int(headers["ETag"].strip('"'))
+            else:
+                status, _, delta = self.ask(f"delta?from={revision}")
+                self.assertEqual(status, 200)
+                held, revision = self.applied(held, delta)
+                sizes.append((len(delta), len(held)))
+        if revision != int(self.ask("solution.glb", "HEAD")[1]["ETag"].strip('"')):
+            held, _ = self.applied(held, self.ask(f"delta?from={revision}")[2])
+        self.assertEqual(held, (self.folder / "room.glb").read_bytes())
+        self.assertGreaterEqual(len(sizes), 3)
+        self.assertTrue(any(delta < 0.7 * whole for delta, whole in sizes), sizes)
+        process.send_signal(signal.SIGINT)
+
+    def applied(self, before, delta):
+        magic, revision, size, pieces = struct.unpack_from("<4s3I", delta)
+        self.assertEqual(magic, b"XDL1")
+        new, after = 16 + 8 * pieces, bytearray()
+        for k in range(pieces):
+            start, length = struct.unpack_from("<2I", delta, 16 + 8 * k)
+            if start == 0xffffffff:
+                after += delta[new:new + length]
+                new += length
+            else:
+                after += before[start:start + length]
+        self.assertEqual((len(after), new), (size, len(delta)))
+        return bytes(after), revision
+
+    def test_revisions_that_are_gone(self):
+        self.view("box.glb")
+        for query in ["", "?from=", "?from=0", "?from=1", "?from=2", "?from=-1", "?from=1x",
+                      "?from=99999999999999999999", "?from=../box.glb"]:
+            with self.subTest(query=query):
+                self.assertEqual(self.ask("delta" + query)[0], 410)
+
+    def test_solve_is_shown_and_goes_on_when_the_page_closes(self):
+        self.write("room.geom", box(patches=4))
+        process = self.serve("solve", "room.geom", "-o", "room.glb", "--error", "0.02", "--view",
+                             "--no-open")
+        page = self.listen()
+        self.assertIn(b"200 OK", page.recv(4096))
+        page.close()
+        said, _ = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0)
+        self.assertRegex(said, r"room\.glb: \d+ vertices")
+        whole = self.succeed("solve", "room.geom", "-o", "alone.glb", "--error", "0.02")
+        self.assertEqual((self.folder / "room.glb").read_bytes(),
+                         (self.folder / "alone.glb").read_bytes(), whole.stdout)
+
+    def test_a_solve_that_nobody_can_watch_ends(self):
+        """No browser, and nobody came."""
+        done = self.run_program("solve", "box.geom", "-o", "again.glb", "--error", "0.3", "--view",
+                                env={"PATH": "/nowhere"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no browser could be opened", done.stderr)
+        self.assertEqual((self.folder / "again.glb").read_bytes(),
+                         (self.folder / "box.glb").read_bytes())
+
     def test_ctrl_c_keeps_what_is_lit(self):
         self.write("room.geom", box(patches=8))
         process = self.view("room.geom", "-o", "room.glb", "--error", "0.003")
@@ -314,6 +388,40 @@ class Live(Viewing):
         process.send_signal(signal.SIGINT)
         self.assertEqual(self.ends(process, 60), 0)
         self.succeed("info", "room.glb")
+
+
+class Radview(Viewing):
+    def up_of(self, *arguments):
+        process = self.serve("radview", *arguments, "--no-open", "--quiet")
+        page = self.listen()
+        for event, data in Live.events(self, page):
+            if event == "solution" or data["phase"] != "done":
+                continue
+            break
+        self.write("seen.glb", self.ask("solution.glb")[2])
+        process.send_signal(signal.SIGINT)
+        self.ends(process)
+        return extras(self.folder / "seen.glb")["up"]
+
+    def test_scene(self):
+        self.write("room.toml", GRID + "[solve]\nerror = 0.3\n")
+        for arguments, up in [([], [0, 1, 0]), (["z"], [0, 0, 1]), (["-y"], [0, -1, 0]),
+                              (["-z"], [0, 0, -1])]:
+            with self.subTest(arguments=arguments):
+                self.assertEqual(self.up_of("room.toml", *arguments), up)
+
+    def test_solution(self):
+        self.serve("radview", "box.glb", "-z", "--no-open", "--quiet")
+        self.write("seen.glb", self.ask("solution.glb")[2])
+        self.assertEqual(extras(self.folder / "seen.glb")["up"], [0, 0, -1])
+        self.assertEqual(extras(self.folder / "box.glb")["up"], [0, 1, 0])
+        self.serve("radview", "box.glb", "--no-open", "--quiet")
+        self.assertEqual(self.ask("solution.glb")[2], (self.folder / "box.glb").read_bytes())
+
+    def test_refusals(self):
+        for message, *axis in [("up-axis", "x"), ("excludes", "y", "-z"), ("excludes", "-y", "-z")]:
+            self.refuse(WRONG_USE, message, "radview", "box.glb", *axis, "--no-open")
+        self.refuse(BAD_INPUT, "none.glb", "radview", "none.glb", "--no-open")
 
 
 class OnePage(Viewing):
@@ -340,6 +448,11 @@ class WrongUse(Viewing):
         self.refuse(WRONG_USE, "--port", "view", "box.glb", "--port", "70000")
         self.refuse(WRONG_USE, "excludes", "view", "box.glb", "--port", "80", "--html", "a.html")
         self.refuse(WRONG_USE, "solution already", "view", "box.glb", "-o", "other.glb")
+        for message, *more in [("--view needs --output", "--view", "--log", "csv"),
+                               ("excludes", "--view", "--compare"),
+                               ("a table", "--view", "--log", "csv", "-o", "new.glb"),
+                               ("requires --view", "--no-open", "-o", "new.glb")]:
+            self.refuse(WRONG_USE, message, "solve", "box.geom", *more)
         self.refuse(WRONG_USE, "ends in .html", "view", "box.glb", "--html", "page.txt")
 
 

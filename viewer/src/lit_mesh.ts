@@ -4,10 +4,11 @@
 
 import * as THREE from 'three'
 import { MeshBVH } from 'three-mesh-bvh'
-import { type LookUniforms, surfaceMaterial } from './shading'
+import { type Columns, floatTexture, type LookUniforms, REST_WIDTH, surfaceMaterial } from './shading'
 import type { Primitive, Solution, TextureImage } from './solution'
 
-// WebGL 2 promises 16 attributes; position, normal and two texture places take four.
+// WebGL 2 promises 16 attributes; position, normal and two texture places take four. The light of
+// further groups lies in a texture.
 const MOST_COLUMNS = 12
 
 async function texture(image: TextureImage): Promise<THREE.Texture> {
@@ -22,6 +23,10 @@ async function texture(image: TextureImage): Promise<THREE.Texture> {
   return out
 }
 
+function same(a: Float32Array | Uint32Array, b: Float32Array | Uint32Array): boolean {
+  return a.length === b.length && a.every((v, i) => v === b[i])
+}
+
 const isPatterned = (solution: Solution, p: Primitive) =>
   !!(solution.materials[p.material].reflectancePattern || solution.materials[p.material].exitancePattern)
 
@@ -32,6 +37,7 @@ export class LitMesh extends THREE.Group {
   private receive: THREE.Mesh        // columns: irradiance; patterns, and everything when it is measured
   private wires?: THREE.Mesh
   private columns: number
+  private restLight: THREE.DataTexture[] = []
 
   private constructor(private solution: Solution, private shared: LookUniforms, textures: THREE.Texture[]) {
     super()
@@ -64,6 +70,23 @@ export class LitMesh extends THREE.Group {
     return Math.min(MOST_COLUMNS, solution.groups.length)
   }
 
+  /** Shows another revision where only the light differs; whether it does. */
+  continueWith(solution: Solution): boolean {
+    const now = this.solution
+    const shape = (s: Solution) => JSON.stringify([s.primitives, s.materials, s.groups, s.textures.length])
+    if (solution.groups.length > this.columns || !same(now.indices, solution.indices) || !same(now.positions, solution.positions) || !same(now.normals, solution.normals)
+      || shape(now) !== shape(solution)) return false
+    for (const [mesh, columns] of [[this.shine, 'exitance'], [this.receive, 'irradiance']] as const)
+      solution[columns].slice(0, this.columns).forEach((column, k) => {
+        const attribute = mesh.geometry.getAttribute(`column${k}`) as THREE.BufferAttribute
+        if (same(attribute.array as Float32Array, column)) return
+        attribute.array = column
+        attribute.needsUpdate = true
+      })
+    this.solution = solution
+    return true
+  }
+
   private withColumns(values: Float32Array[]): THREE.BufferGeometry {
     const out = new THREE.BufferGeometry()
     out.setIndex(this.geometry.index)
@@ -73,15 +96,30 @@ export class LitMesh extends THREE.Group {
     return out
   }
 
+  /** The light of the groups that are no columns, one after the other. */
+  private rest(values: Float32Array[]): THREE.DataTexture | undefined {
+    const rest = values.slice(this.columns), vertices = this.solution.positions.length / 3
+    if (rest.length === 0) return undefined
+    const out = floatTexture(REST_WIDTH, Math.ceil(rest.length * vertices / REST_WIDTH))
+    rest.forEach((light, k) => {
+      const texels = (out.image.data as unknown as Float32Array).subarray(4 * k * vertices)
+      for (let v = 0; v < vertices; ++v)
+        for (let c = 0; c < 3; ++c) texels[4 * v + c] = light[3 * v + c]
+    })
+    return out
+  }
+
   /** One draw per run of primitives that look alike. */
-  private materials(geometry: THREE.BufferGeometry, columnsAre: 'exitance' | 'irradiance',
-    textures: THREE.Texture[]): THREE.Material[] {
+  private materials(geometry: THREE.BufferGeometry, are: Columns['are'], textures: THREE.Texture[]): THREE.Material[] {
     const out: THREE.Material[] = []
+    const { groups, positions } = this.solution
+    const columns: Columns = { are, count: this.columns, rest: groups.length - this.columns, restLight: this.rest(this.solution[are]),
+      vertices: positions.length / 3 }
+    if (columns.restLight) this.restLight.push(columns.restLight)
     for (const p of this.solution.primitives) {
       geometry.addGroup(3 * p.firstTriangle, 3 * p.triangles, out.length)
-      const material = surfaceMaterial(this.columns, columnsAre, this.solution.materials[p.material], p.group,
-        textures, this.shared)
-      material.visible = columnsAre === 'irradiance' || !isPatterned(this.solution, p)
+      const material = surfaceMaterial(columns, this.solution.materials[p.material], p.group, textures, this.shared)
+      material.visible = are === 'irradiance' || !isPatterned(this.solution, p)
       out.push(material)
     }
     return out
@@ -108,27 +146,17 @@ export class LitMesh extends THREE.Group {
     if (this.wires) this.wires.visible = shown
   }
 
-  /** Sets what each group counts; `factors` are three per group. Beyond what a vertex can carry
-   * the rest is summed here into the last column. */
+  /** Sets what each group counts; `factors` are three per group. */
   setFactors(factors: number[]): void {
-    const uniform = this.shared.factors.value
-    const groups = this.solution.groups.length
-    this.shared.groupFactors.value.set(factors)
-    if (groups <= this.columns) {
-      uniform.set(factors)
-      return
+    const { factors: columns, groupFactors, restFactors } = this.shared
+    groupFactors.value.set(factors)
+    columns.value.set(factors.slice(0, 3 * this.columns))
+    const rest = restFactors.value.image.data as unknown as Float32Array
+    for (let i = 3 * this.columns; i < factors.length; ++i) {
+      const k = i - 3 * this.columns
+      rest[4 * Math.floor(k / 3) + k % 3] = factors[i]
     }
-    const last = this.columns - 1
-    uniform.set(factors.slice(0, 3 * last))
-    uniform.fill(1, 3 * last)
-    for (const [mesh, columns] of [[this.shine, this.solution.exitance], [this.receive, this.solution.irradiance]] as const) {
-      const sum = new Float32Array(columns[0].length)
-      for (let g = last; g < groups; ++g)
-        for (let i = 0; i < sum.length; ++i) sum[i] += factors[3 * g + i % 3] * columns[g][i]
-      const attribute = mesh.geometry.getAttribute(`column${last}`) as THREE.BufferAttribute
-      attribute.array.set(sum)
-      attribute.needsUpdate = true
-    }
+    restFactors.value.needsUpdate = true
   }
 
   dispose(): void {
@@ -136,6 +164,7 @@ export class LitMesh extends THREE.Group {
       mesh.geometry.dispose()
       for (const material of mesh.material as THREE.Material[]) material.dispose()
     }
+    for (const texture of this.restLight) texture.dispose()
     this.geometry.dispose()
     ;(this.wires?.material as THREE.Material | undefined)?.dispose()
   }

@@ -13,6 +13,7 @@ export const LOOKS: Look[] = ['picture', 'illuminance', 'exitance', 'normals', '
 /** Shared by all materials, so that setting a value shows everywhere. */
 export interface LookUniforms {
   factors: { value: Float32Array }     // RGB per column
+  restFactors: { value: THREE.DataTexture } // RGB per group that is no column
   groupFactors: { value: Float32Array } // RGB per group, for what shines itself
   look: { value: number }
   raw: { value: boolean }              // linear radiance and coverage, for measuring
@@ -25,9 +26,19 @@ export interface LookUniforms {
   [name: string]: THREE.IUniform
 }
 
+/** RGBA in full precision, looked up texel by texel. */
+export function floatTexture(width: number, height: number): THREE.DataTexture {
+  const out = new THREE.DataTexture(new Float32Array(4 * width * height), width, height, THREE.RGBAFormat, THREE.FloatType)
+  out.needsUpdate = true
+  return out
+}
+
+export const REST_WIDTH = 4096
+
 export function lookUniforms(columns: number, groups: number): LookUniforms {
   return {
     factors: { value: new Float32Array(3 * columns) },
+    restFactors: { value: floatTexture(Math.max(1, groups - columns), 1) },
     groupFactors: { value: new Float32Array(3 * groups) },
     look: { value: 0 }, raw: { value: false }, exposure: { value: 1 }, toneCurve: { value: 1 },
     white: { value: 4 }, range: { value: new THREE.Vector2(0, 1) }, contour: { value: 0 },
@@ -37,10 +48,14 @@ export function lookUniforms(columns: number, groups: number): LookUniforms {
 
 const list = <T>(n: number, each: (k: number) => T) => Array.from({ length: n }, (_, k) => each(k))
 
-/** Columns are exitance, or irradiance where a pattern makes exitance vary within a triangle. */
-function vertexShader(columns: number, patterned: boolean): string {
+/** Columns are exitance, or irradiance where a pattern makes exitance vary within a triangle. The
+ * light of groups that are no columns, `rest`, is looked up in a texture by the vertex's number. */
+function vertexShader(columns: number, rest: number, patterned: boolean): string {
   return /* glsl */ `
 precision highp float;
+precision highp int;
+precision highp sampler2D;
+${rest > 0 ? 'uniform sampler2D restLight, restFactors;\nuniform int vertices;' : ''}
 uniform mat4 modelMatrix, viewMatrix, projectionMatrix;
 uniform vec3 factors[${columns}];
 in vec3 position, normal;
@@ -49,6 +64,10 @@ ${list(columns, (k) => `in vec3 column${k};`).join('\n')}
 out vec3 light, facing, where;
 void main() {
   light = ${list(columns, (k) => `factors[${k}] * column${k}`).join(' + ')};
+  ${rest > 0 ? `for (int k = 0; k < ${rest}; ++k) {
+    int i = k * vertices + gl_VertexID;
+    light += texelFetch(restFactors, ivec2(k, 0), 0).rgb * texelFetch(restLight, ivec2(i % ${REST_WIDTH}, i / ${REST_WIDTH}), 0).rgb;
+  }` : ''}
   facing = normal;
   ${patterned ? 'place0 = uv0; place1 = uv1;' : ''}
   vec4 world = modelMatrix * vec4(position, 1.0);
@@ -111,20 +130,29 @@ function mapUniforms(pattern: Pattern | undefined, textures: THREE.Texture[]) {
     texel: new THREE.Vector3(...(pattern?.factor ?? [-1, -1, -1])), most: pattern?.most ?? 1 }
 }
 
-/** The material of one primitive. `columnsAre`: what the geometry's columns hold. */
-export function surfaceMaterial(columns: number, columnsAre: 'exitance' | 'irradiance', material: Material,
-  group: number, textures: THREE.Texture[], shared: LookUniforms): THREE.RawShaderMaterial {
-  const patterned = columnsAre === 'irradiance' && !!(material.reflectancePattern || material.exitancePattern)
+/** What a geometry's columns hold, and the light of the groups beyond them. */
+export interface Columns {
+  are: 'exitance' | 'irradiance'
+  count: number
+  rest: number                // groups
+  restLight?: THREE.DataTexture
+  vertices: number
+}
+
+/** The material of one primitive. */
+export function surfaceMaterial(columns: Columns, material: Material, group: number, textures: THREE.Texture[], shared: LookUniforms): THREE.RawShaderMaterial {
+  const patterned = columns.are === 'irradiance' && !!(material.reflectancePattern || material.exitancePattern)
   const r = mapUniforms(material.reflectancePattern, textures), e = mapUniforms(material.exitancePattern, textures)
   // The factor of the group that the surface shines in follows the mix: a view of the same array.
   const emissionFactor = { get value() { return new THREE.Vector3().fromArray(shared.groupFactors.value, 3 * group) } }
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
-    vertexShader: vertexShader(columns, patterned),
+    vertexShader: vertexShader(columns.count, columns.rest, patterned),
     fragmentShader: fragmentShader(patterned),
     uniforms: {
       ...shared,
-      isIrradiance: { value: columnsAre === 'irradiance' },
+      isIrradiance: { value: columns.are === 'irradiance' },
+      ...(columns.restLight ? { restLight: { value: columns.restLight }, vertices: { value: columns.vertices } } : {}),
       reflectance: { value: new THREE.Vector3(...material.reflectance) },
       emission: { value: new THREE.Vector3(...material.exitance) },
       emissionFactor,

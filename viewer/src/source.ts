@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the solution comes from: the program that serves this page, or the page itself.
 
+import { applyDelta } from './byte_delta'
 import { byId, element } from './elements'
 import { figures, percent } from './numbers'
 import { readSolution, type Solution } from './solution'
@@ -18,15 +19,13 @@ export function embeddedSolution(): Solution | null {
   return readSolution(bytes.buffer)
 }
 
-async function fetchSolution(): Promise<Solution> {
-  const answer = await fetch('solution.glb')
-  if (!answer.ok) throw Error(`The program answers ${answer.status}.`)
-  return readSolution(await answer.arrayBuffer())
-}
-
 export class Server extends EventTarget {
-  /** Revisions of the solution that have been shown. */
+  /** The revision of the solution that is shown. */
   shown = 0
+  /** How many bytes each revision took that came as what had changed. */
+  readonly deltas: number[] = []
+  private file?: ArrayBuffer  // of the revision that is shown, while others may follow
+  private solving = false
   private events = new EventSource('events')
   private busy = false
   private wanted = 0
@@ -54,9 +53,10 @@ export class Server extends EventTarget {
     if (this.busy) return
     this.busy = true
     try {
-      while (this.shown !== this.wanted) {
-        const revision = this.wanted
-        await this.show(await fetchSolution())
+      while (this.shown < this.wanted) {
+        const { revision, bytes } = await this.fetchRevision()
+        await this.show(readSolution(bytes))
+        this.file = this.solving ? bytes : undefined
         this.shown = revision
         this.dispatchEvent(new Event('shown'))
       }
@@ -66,8 +66,24 @@ export class Server extends EventTarget {
     this.busy = false
   }
 
+  /** What has changed since what is shown, or the whole file. */
+  private async fetchRevision(): Promise<{ revision: number; bytes: ArrayBuffer }> {
+    if (this.file) {
+      const answer = await fetch(`delta?from=${this.shown}`)
+      if (answer.ok) {
+        const delta = await answer.arrayBuffer()
+        this.deltas.push(delta.byteLength)
+        return applyDelta(this.file, delta)
+      }
+    }
+    const answer = await fetch('solution.glb')
+    if (!answer.ok) throw Error(`The program answers ${answer.status}.`)
+    return { revision: Number(answer.headers.get('ETag')!.slice(1, -1)), bytes: await answer.arrayBuffer() }
+  }
+
   private showProgress(progress: Progress): void {
     this.paused = progress.paused
+    this.solving = progress.phase !== 'done'
     byId('solving').hidden = progress.phase === 'done'
     byId<HTMLProgressElement>('solving-bar').value = progress.done
     byId('solving-pause').textContent = progress.paused ? 'Resume' : 'Pause'

@@ -26,10 +26,11 @@ export class Stage {
   }
 
   async show(solution: Solution): Promise<void> {
+    if (this.mesh?.continueWith(solution)) return
     const uniforms = lookUniforms(LitMesh.columnsOf(solution), solution.groups.length)
     if (this.uniforms)
       for (const name of Object.keys(uniforms))
-        if (name !== 'factors' && name !== 'groupFactors') uniforms[name] = this.uniforms[name]
+        if (!['factors', 'groupFactors', 'restFactors'].includes(name)) uniforms[name] = this.uniforms[name]
     const mesh = await LitMesh.make(solution, uniforms)
     if (this.mesh) {
       this.scene.remove(this.mesh)
