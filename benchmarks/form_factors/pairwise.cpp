@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Form factors of a room: processor time, memory, and how far they are off: row sums (the room is
-// closed), factors between whole faces, and the mean over rows of Σ_j |F_ij − finer F_ij|.
+// closed), factors between whole faces, and the mean over rows of Σ_j |F_ij − finer F_ij|, the last
+// two against a finer run.
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 
@@ -54,6 +55,39 @@ double option(int argc, char** argv, const char* name, double otherwise) {
 struct RowErrors {
     double mean = 0, most = 0;
 };
+// Whole faces: facets of one plane, in the order in which they were made.
+std::vector<std::size_t> faces(const Enclosure& room) {
+    std::vector<std::size_t> of_row(room.surfaces.size());
+    std::size_t face = 0;
+    const Facet* before = nullptr;
+    for (const Facet& facet : room.facets) {
+        if (before && (dot(facet.normal, before->normal) < 1 - 1e-9 ||
+                       std::abs(dot(facet.normal, facet.outline[0] - before->outline[0])) > 1e-9))
+            ++face;
+        of_row[facet.row] = face;
+        before = &facet;
+    }
+    return of_row;
+}
+
+// Greatest |difference| of a factor from the smaller of two whole faces to the other.
+double face_difference(const Enclosure& room, const ExchangeAreas& a, const ExchangeAreas& b) {
+    const std::vector<std::size_t> face = faces(room);
+    const std::size_t n = face.back() + 1;
+    std::vector<double> area(n), off(n * n);
+    for (std::size_t i = 0; i < face.size(); ++i) area[face[i]] += room.surfaces[i].area;
+    for (std::size_t i = 0; i < a.rows(); ++i)
+        for (std::size_t j = 0; j < i; ++j) {
+            const std::size_t f = std::max(face[i], face[j]), g = std::min(face[i], face[j]);
+            off[f * n + g] += a.at(i, j) - b.at(i, j);
+        }
+    double most = 0;
+    for (std::size_t f = 0; f < n; ++f)
+        for (std::size_t g = 0; g < f; ++g)
+            most = std::max(most, std::abs(off[f * n + g]) / std::min(area[f], area[g]));
+    return most;
+}
+
 RowErrors difference(const Enclosure& room, const ExchangeAreas& a, const ExchangeAreas& b) {
     std::vector<double> sums(room.surfaces.size());
     for (std::size_t i = 0; i < a.rows(); ++i)
@@ -108,20 +142,22 @@ int main(int argc, char** argv) try {
     }
     std::printf(
         "{\"rows\": %zu, \"cpu_seconds\": %.4f, \"row_sum_error\": %.3e, "
-        "\"row_sum_rms\": %.3e, \"bytes\": %zu, \"resident_kib\": %ld, \"pairs\": %llu, "
-        "\"separated\": %llu, \"hidden\": %llu, \"visible\": %llu, \"partial\": %llu, "
-        "\"viewpoints\": %llu",
+        "\"row_sum_rms\": %.3e, \"bytes\": %zu, \"resident_kib\": %ld",
         sums.size(), cost, worst, std::sqrt(squares / double(sums.size())), areas->bytes(),
-        after - before, static_cast<unsigned long long>(counters.pairs),
-        static_cast<unsigned long long>(counters.separated),
-        static_cast<unsigned long long>(counters.hidden),
-        static_cast<unsigned long long>(counters.visible),
-        static_cast<unsigned long long>(counters.partial),
-        static_cast<unsigned long long>(counters.viewpoints));
+        after - before);
+    const std::initializer_list<std::pair<const char*, std::uint64_t>> counted{
+        {"pairs", counters.pairs},           {"separated", counters.separated},
+        {"hidden", counters.hidden},         {"visible", counters.visible},
+        {"partial", counters.partial},       {"sampled", counters.sampled},
+        {"viewpoints", counters.viewpoints}, {"rays", counters.rays}};
+    for (const auto& [name, count] : counted)
+        std::printf(", \"%s\": %llu", name, static_cast<unsigned long long>(count));
     if (finer > 0) {
         options.accuracy = finer;
-        const RowErrors errors = difference(room, *areas, pairwise_exchange_areas(room, options));
-        std::printf(", \"row_l1_mean\": %.3e, \"row_l1_most\": %.3e", errors.mean, errors.most);
+        const ExchangeAreas truth = pairwise_exchange_areas(room, options);
+        const RowErrors errors = difference(room, *areas, truth);
+        std::printf(", \"row_l1_mean\": %.3e, \"row_l1_most\": %.3e, \"face_error\": %.3e",
+                    errors.mean, errors.most, face_difference(room, *areas, truth));
     }
     std::printf("}\n");
     return 0;

@@ -55,6 +55,26 @@ TEST(Pairwise, SquaresWithASquareBetween) {
     }
 }
 
+TEST(Pairwise, VeryMuchBetweenIsLookedPastByRays) {
+    // The square of the case above in 100 pieces, each a little higher than the one before, so that
+    // they stay apart: together they hide what it does, to some 1e-4.
+    Enclosure enclosure;
+    add_facet(enclosure, level(0, 1, 0, 1, 0, true));
+    add_facet(enclosure, level(0, 1, 0, 1, 1, false));
+    for (int k = 0; k < 100; ++k) {
+        const double x = 0.25 + 0.05 * (k % 10), y = 0.25 + 0.05 * (k / 10);
+        add_facet(enclosure, level(x, x + 0.05, y, y + 0.05, 0.5 + 1e-6 * k, true), true);
+    }
+    for (const double accuracy : {1e-2, 1e-3}) {
+        PairwiseCounters counters;
+        const auto areas = pairwise_exchange_areas(enclosure, {accuracy}, {}, nullptr, &counters);
+        EXPECT_EQ(counters.sampled, 1u);
+        EXPECT_GT(counters.rays, 0u);
+        // A standard error; three of them and the steps.
+        EXPECT_NEAR(factor(enclosure, areas, 0, 1), 0.09950629459898491, 3 * accuracy + 1e-4);
+    }
+}
+
 TEST(Pairwise, ASheetAsLargeHidesAll) {
     EXPECT_EQ(past_a_square(-0.1, 1.1, -0.1, 1.1, 1e-4), 0);
 }

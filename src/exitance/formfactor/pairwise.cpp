@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <atomic>
+#include <memory>
 #include <mutex>
 #include <numeric>
 
 #include "exitance/formfactor/facet_tree.h"
 #include "exitance/formfactor/pair_exchange.h"
+#include "exitance/formfactor/pair_visibility.h"
 #include "exitance/run/error.h"
 #include "exitance/run/parallel.h"
+#include "exitance/run/random.h"
 #include "exitance/visibility/shaft.h"
 
 namespace exitance {
@@ -30,7 +33,8 @@ struct Group {
 struct Problem {
     double scale = 1;
     std::vector<SampledFacet> facets;
-    std::vector<std::uint32_t> rows;  ///< of each facet
+    std::vector<std::uint32_t> number;  ///< of each facet in the enclosure
+    std::vector<std::uint32_t> rows;    ///< of each facet
     std::vector<Blocker> blockers;
     std::vector<double> row_area;
     double total_area = 0;
@@ -42,12 +46,14 @@ struct Problem {
         scale = bounds.diagonal() > 0 ? bounds.diagonal() : 1;
         const Vec3 middle = bounds.empty() ? Vec3{} : bounds.centre();
         std::vector<SmallPolygon> outlines;
-        for (const Facet& facet : enclosure.facets) {
+        for (std::uint32_t i = 0; i < enclosure.facets.size(); ++i) {
+            const Facet& facet = enclosure.facets[i];
             SmallPolygon outline;
             for (const Vec3& corner : facet.corners()) outline.add((corner - middle) / scale);
             outlines.push_back(outline);
             if (facet.row == Facet::only_blocks) continue;
             facets.emplace_back(outline.corners());
+            number.push_back(i);
             rows.push_back(facet.row);
             row_area[facet.row] += facets.back().area;
             total_area += facets.back().area;
@@ -85,16 +91,44 @@ struct Problem {
     }
 };
 
+/// Rays between the facets of an enclosure, for pairs with very much between. What the rays meet
+/// is set up when the first pair asks.
+class RaysBetweenPairs {
+  public:
+    RaysBetweenPairs(const Enclosure& enclosure, const Problem& problem)
+        : enclosure_(enclosure), problem_(problem) {}
+
+    double operator()(const Pair& pair, double free, double tolerance) {
+        std::call_once(built_, [&] { caster_ = std::make_unique<FacetCaster>(enclosure_); });
+        const std::uint32_t f = problem_.number[pair.facet_a], g = problem_.number[pair.facet_b];
+        const double unit = problem_.scale * problem_.scale;
+        return visible_exchange_area(*caster_, enclosure_.facets[f], enclosure_.facets[g],
+                                     hash_bits(f, g), free * unit, tolerance * unit, counters) /
+               unit;
+    }
+
+    MethodCounters counters;
+
+  private:
+    const Enclosure& enclosure_;
+    const Problem& problem_;
+    std::once_flag built_;
+    std::unique_ptr<FacetCaster> caster_;
+};
+
 /// One group against all facets in rows up to its own.
 class GroupWork {
   public:
-    GroupWork(const Problem& problem, const FacetTree& tree, const Group& group, double accuracy)
+    GroupWork(const Problem& problem, const FacetTree& tree, const Group& group, double accuracy,
+              RaysBetweenPairs& rays)
         : problem_(problem),
           tree_(tree),
           group_(group),
           extent_(problem.facets, group.facets, slack),
           accuracy_(accuracy),
-          pair_(accuracy, slack) {
+          pair_(accuracy, slack, [&rays](const Pair& pair, double free, double tolerance) {
+              return rays(pair, free, tolerance);
+          }) {
         for (const std::uint32_t row : group.rows) {
             sums_.emplace_back(row + 1, 0.0);
             last_row_ = std::max(last_row_, row);
@@ -180,9 +214,13 @@ class GroupWork {
             for (LaneMask m = open; m; m &= m - 1) {
                 const auto lane = static_cast<std::size_t>(std::countr_zero(m));
                 const std::uint32_t j = block.facet[lane];
-                const Pair pair{&facet, &problem_.facets[j], (far.wholly >> lane & 1) != 0,
+                const Pair pair{&facet,
+                                &problem_.facets[j],
+                                (far.wholly >> lane & 1) != 0,
                                 static_cast<double>(far.area[lane]),
-                                static_cast<double>(far.distance[lane])};
+                                static_cast<double>(far.distance[lane]),
+                                i,
+                                j};
                 const std::size_t begin = later_blockers_.size();
                 for (const Candidate& c : candidates_)
                     if (c.lanes >> lane & 1) later_blockers_.push_back(c.blocker);
@@ -205,7 +243,7 @@ class GroupWork {
 
     // Pairs with something between. Work goes with 1 / error, so that a given sum of errors costs
     // least when each goes with the root of what it is an error of; the sum over a facet's pairs is
-    // to be some accuracies of its area. What is above the diagonal is taken to be as what is
+    // to be the accuracy of its area. What is above the diagonal is taken to be as what is
     // below.
     void settle() {
         std::vector<double> roots(group_.facets.size());
@@ -218,7 +256,7 @@ class GroupWork {
         for (const Later& pair : later_) {
             const double share = weight(pair) / roots[pair.facet];
             const double tolerance =
-                accuracy_ * std::min(0.5 * weight(pair), 4 * pair.pair.a->area * share);
+                accuracy_ * std::min(weight(pair), 0.9 * pair.pair.a->area * share);
             add(pair.facet, pair.row,
                 pair_.seen(pair.pair,
                            std::span(later_blockers_)
@@ -261,6 +299,7 @@ void add(PairwiseCounters& to, const PairwiseCounters& more) {
     to.hidden += more.hidden;
     to.visible += more.visible;
     to.partial += more.partial;
+    to.sampled += more.sampled;
     to.viewpoints += more.viewpoints;
 }
 
@@ -272,6 +311,7 @@ ExchangeAreas pairwise_exchange_areas(const Enclosure& enclosure, const Pairwise
     const Problem problem(enclosure);
     const FacetTree tree(problem.facets, problem.rows, slack);
     const std::vector<Group> groups = problem.groups();
+    RaysBetweenPairs rays(enclosure, problem);
     const double unit = problem.scale * problem.scale;
     // S_ij below this share of A_i A_j: all of a row's together are a tenth of the accuracy.
     const double share = 0.1 * options.accuracy / std::max(problem.total_area, 1e-300);
@@ -293,7 +333,7 @@ ExchangeAreas pairwise_exchange_areas(const Enclosure& enclosure, const Pairwise
         groups.size(),
         [&](std::size_t g) {
             if (cancel && cancel->requested()) return;
-            GroupWork work(problem, tree, groups[g], options.accuracy);
+            GroupWork work(problem, tree, groups[g], options.accuracy, rays);
             work.run();
             counted[g] = work.counters();
             if (!groups[g].whole) {
@@ -327,6 +367,10 @@ ExchangeAreas pairwise_exchange_areas(const Enclosure& enclosure, const Pairwise
             if (counters) add(*counters, counted[g + 1]);
         }
         keep(row, sum);
+    }
+    if (counters) {
+        counters->rays += rays.counters.rays;
+        counters->unreached += rays.counters.unreached;
     }
     return areas;
 }

@@ -23,7 +23,11 @@ struct PairwiseCounters {
     std::uint64_t hidden = 0;     ///< behind one convex blocker
     std::uint64_t visible = 0;    ///< after a look at the blockers
     std::uint64_t partial = 0;
+    std::uint64_t sampled =
+        0;  ///< of these, by rays: so much is between that exact views cost more
     std::uint64_t viewpoints = 0;
+    std::uint64_t rays = 0;
+    std::uint64_t unreached = 0;  ///< by rays, and not to the accuracy
 };
 
 /// Entries that together are less than a tenth of the accuracy of their row are left out where that

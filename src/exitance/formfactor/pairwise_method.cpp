@@ -16,6 +16,8 @@ FormFactorMatrix pairwise_form_factors(const MethodCall& call) {
     ExchangeAreas S = pairwise_exchange_areas(call.enclosure, {call.options.accuracy}, call.observe,
                                               call.cancel, &counters);
     call.counters.evaluations += counters.pairs;
+    call.counters.rays += counters.rays;
+    call.counters.unreached += counters.unreached;
     return {surface_areas(call.enclosure), std::move(S)};
 }
 

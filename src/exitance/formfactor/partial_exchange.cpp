@@ -196,7 +196,7 @@ PartialExchange PartialExchanger::operator()(const SmallPolygon& from, const Pla
             sum.seen += cell.found.seen;
             sum.hidden += cell.found.hidden;
         }
-        const double share = 0.01 / static_cast<double>(cells_.size());
+        const double share = 0.0025 / static_cast<double>(cells_.size());
         return std::min(sum.seen, sum.hidden) < 1e-5 * free ? share * free : 0;
     };
     if (free > slips &&
