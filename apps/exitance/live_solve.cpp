@@ -64,6 +64,7 @@ Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer&
         server.tell_progress(told(progress, false));
     };
     Snapshots shown = snapshots;
+    shown.unshot = true;
     shown.take = [&](Solution so_far) {
         const Stopwatch clock;
         write_solution(so_far, file);
@@ -78,6 +79,7 @@ Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer&
     server.show(file);
     Progress done;
     done.phase = "done", done.fraction_left = 0;
+    if (solution.error) done.error = solution.error->rms;
     server.tell_progress(told(done, false));
     return solution;
 }

@@ -15,6 +15,7 @@
 #include "exitance/solve/element_solve.h"
 #include "exitance/solve/merge.h"
 #include "exitance/solve/shooting.h"
+#include "exitance/solve/unshot.h"
 
 namespace exitance {
 
@@ -75,7 +76,9 @@ ElementOptions element_options(const SolveOptions& options) {
 }
 
 void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const Shooting* solver) {
-    Solution so_far = extract_solution(radiosity);
+    std::vector<float> unshot;
+    if (snapshots.unshot && solver) unshot = unshot_at_vertices(radiosity);
+    Solution so_far = extract_solution(radiosity, unshot);
     if (snapshots.ambient && solver) {
         const std::vector<float> ambient = solver->ambient();
         for (std::size_t v = 0; v < so_far.irradiance.rows(); ++v) {
@@ -118,12 +121,14 @@ void require_polygons(const Scene& scene) {
 /// tell whether it did, and if not, more is demanded while that helps.
 struct Demand {
     double error;
-    double found = INFINITY;  ///< by the held-out points, the last time
+    double found = INFINITY;               ///< by the held-out points, the last time
+    std::optional<double> estimate_now{};  ///< by them, whether or not more is demanded
 
     bool rise(const SolveOptions& options, const Radiosity& radiosity) {
         constexpr double least = 0.1, worthwhile = 0.9;
         if (!options.adaptive || options.unshot || options.next_shot) return false;
         const auto estimate = estimate_error(extract_solution(radiosity), options.seed);
+        if (estimate) estimate_now = estimate->rms;
         if (!estimate || estimate->rms <= options.error) return false;
         if (estimate->rms > worthwhile * found || error <= least * options.error) return false;
         found = estimate->rms;
@@ -166,7 +171,11 @@ Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
     Shooting solver(radiosity, shooting);
     const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, solver);
     Demand demand{options.error};
-    while (run(solver, task.stop, task.clock, watch) == Ended::converged &&
+    const Observer tell = [&](Progress progress) {
+        progress.error = demand.estimate_now;
+        if (watch) watch(progress);
+    };
+    while (run(solver, task.stop, task.clock, tell) == Ended::converged &&
            demand.rise(options, radiosity))
         solver.demand(demand.error, min_area(options, demand.error, task.size));
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, &solver);

@@ -18,6 +18,7 @@ struct Snapshots {
     std::optional<std::uint64_t>
         every{};           ///< shots from one to the next; default: none till the end
     bool ambient = false;  ///< with an estimate of what is still unshot
+    bool unshot = false;   ///< with Solution::unshot
     std::function<void(Solution)> take{};  ///< called from the calling thread
     /// Asked between shots whether one is wanted now; `every` holds besides.
     std::function<bool(const Progress&)> wanted{};

@@ -22,8 +22,13 @@ struct KeyHash {
 
 class Extraction {
   public:
-    Extraction(const Radiosity& radiosity, Solution& out)
-        : radiosity_(radiosity), mesh_(radiosity.mesh), out_(out) {}
+    Extraction(const Radiosity& radiosity, std::span<const float> unshot, Solution& out)
+        : radiosity_(radiosity),
+          mesh_(radiosity.mesh),
+          out_(out),
+          stride_(radiosity.columns.stride + (unshot.empty() ? 0 : 1)) {
+        if (!unshot.empty()) append_column(unshot);
+    }
 
     void run() {
         find_leaves();
@@ -47,9 +52,11 @@ class Extraction {
             out_.triangles.insert(out_.triangles.end(), by_surface[s].begin(), by_surface[s].end());
         }
         out_.irradiance = VertexField(out_.positions.size(), radiosity_.columns.count);
-        const std::size_t stride = radiosity_.columns.stride;
-        for (std::size_t v = 0; v < out_.positions.size(); ++v)
-            std::copy_n(&rows_[v * stride], stride, out_.irradiance[VertexId(v)].begin());
+        const std::size_t columns = radiosity_.columns.stride;
+        for (std::size_t v = 0; v < out_.positions.size(); ++v) {
+            std::copy_n(&rows_[v * stride_], columns, out_.irradiance[VertexId(v)].begin());
+            if (stride_ > columns) out_.unshot.push_back(rows_[v * stride_ + columns]);
+        }
         for (const Face& face : mesh_.faces())
             if (radiosity_.emits(face))
                 out_.emitters.push_back({mesh_.corners(face), face.count,
@@ -57,6 +64,16 @@ class Extraction {
     }
 
   private:
+    // What is unshot is interpolated as the light is.
+    void append_column(std::span<const float> unshot) {
+        rows_of_mesh_.resize(unshot.size() * stride_);
+        for (std::size_t v = 0; v < unshot.size(); ++v) {
+            const auto H = radiosity_.irradiance[VertexId(v)];
+            std::copy(H.begin(), H.end(), &rows_of_mesh_[v * stride_]);
+            rows_of_mesh_[v * stride_ + stride_ - 1] = unshot[v];
+        }
+    }
+
     // Vertices made from now on are of this face: of a patterned one they have a place on its
     // textures, and are shared only with those that have the same.
     void enter(const Face& face) {
@@ -87,7 +104,7 @@ class Extraction {
     // ring by ring, so that no dark fringe surrounds what stands on a surface.
     void fill_buried() {
         if (!any_buried()) return;
-        const std::size_t stride = radiosity_.columns.stride, count = mesh_.vertices().size();
+        const std::size_t stride = stride_, count = mesh_.vertices().size();
         buried_.assign(count * stride, 0.0f);
         std::vector<char> known = radiosity_.exposed;
         std::vector<ElementId> open = leaves_;
@@ -127,8 +144,9 @@ class Extraction {
     }
 
     std::span<const float> light(VertexId v) const {
-        if (radiosity_.exposed[v.index()]) return radiosity_.irradiance[v];
-        return {&buried_[v.index() * radiosity_.columns.stride], radiosity_.columns.stride};
+        if (!radiosity_.exposed[v.index()]) return {&buried_[v.index() * stride_], stride_};
+        if (rows_of_mesh_.empty()) return radiosity_.irradiance[v];
+        return {&rows_of_mesh_[v.index() * stride_], stride_};
     }
 
     std::uint32_t append(const Vec3& position, const Vec3f& normal, std::span<const float> row) {
@@ -212,7 +230,7 @@ class Extraction {
         return made_at(at, smooth, [&] {
             const Vec3 from = mesh_[mesh_[a].position], to = mesh_[mesh_[b].position];
             const auto t = static_cast<float>(length(mesh_[at] - from) / length(to - from));
-            std::vector<float> row(radiosity_.columns.stride);
+            std::vector<float> row(stride_);
             for (std::size_t c = 0; c < row.size(); ++c)
                 row[c] = (1.0f - t) * light(a)[c] + t * light(b)[c];
             const Vec3f normal = normalized(mesh_[a].normal * (1.0f - t) + mesh_[b].normal * t);
@@ -227,9 +245,9 @@ class Extraction {
             triangles.push_back({loop_[0], loop_[1], loop_[2]});
         } else if (loop_.size() == 4 && element.count == 4) {
             // The diagonal along which the light changes less.
-            const std::size_t stride = radiosity_.columns.stride;
             const auto level = [&](std::size_t i) {
-                return radiosity_.columns.luminance({&rows_[loop_[i] * stride], stride});
+                return radiosity_.columns.luminance(
+                    {&rows_[loop_[i] * stride_], radiosity_.columns.stride});
             };
             if (std::abs(level(0) - level(2)) <= std::abs(level(1) - level(3))) {
                 triangles.push_back({loop_[0], loop_[1], loop_[2]});
@@ -249,7 +267,7 @@ class Extraction {
         const float share = 1.0f / static_cast<float>(element.count);
         Vec3 position;
         Vec3f normal;
-        std::vector<float> row(radiosity_.columns.stride, 0.0f);
+        std::vector<float> row(stride_, 0.0f);
         for (const VertexId v : element.corners()) {
             position += mesh_[mesh_[v].position] * static_cast<double>(share);
             normal += mesh_[v].normal;
@@ -261,9 +279,11 @@ class Extraction {
     const Radiosity& radiosity_;
     const Mesh& mesh_;
     Solution& out_;
+    std::size_t stride_;               ///< of a row: the columns of light and maybe what is unshot
+    std::vector<float> rows_of_mesh_;  ///< vertices × stride where rows have that column
     std::vector<ElementId> leaves_;
     std::vector<char> live_;
-    std::vector<float> buried_;  ///< vertices × stride, or empty
+    std::vector<float> buried_;  ///< vertices × stride_, or empty
     std::vector<float> rows_;    ///< irradiance of the vertices made so far
     tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash> index_;
     struct Maps {
@@ -278,7 +298,7 @@ class Extraction {
 
 }  // namespace
 
-Solution extract_solution(const Radiosity& radiosity) {
+Solution extract_solution(const Radiosity& radiosity, std::span<const float> unshot) {
     const Scene& scene = radiosity.scene;
     Solution out;
     out.title = scene.title;
@@ -295,7 +315,7 @@ Solution extract_solution(const Radiosity& radiosity) {
     out.cameras = scene.cameras;
     out.grids = scene.grids;
     out.scene_digest = digest(scene);
-    Extraction(radiosity, out).run();
+    Extraction(radiosity, unshot, out).run();
     if (!out.texture_coordinates.empty()) out.texture_coordinates.resize(out.positions.size());
     return out;
 }

@@ -2,6 +2,8 @@
 // From the solver's quadtrees to the solution: a conforming triangulation without T-vertices.
 #pragma once
 
+#include <span>
+
 #include "exitance/solution/solution.h"
 #include "exitance/solve/radiosity.h"
 
@@ -9,8 +11,9 @@ namespace exitance {
 
 /// Triangles, vertices and irradiance of the leaves, with parts, materials, emitters, cameras and
 /// grids. Every place that any leaf puts on an edge is a vertex of all triangles along that edge.
-/// Vertices buried under other objects take the mean of their exposed neighbours.
-Solution extract_solution(const Radiosity& radiosity);
+/// Vertices buried under other objects take the mean of their exposed neighbours. `unshot`, one per
+/// vertex of the mesh or empty, becomes Solution::unshot.
+Solution extract_solution(const Radiosity& radiosity, std::span<const float> unshot = {});
 
 /// 64 bits over geometry and materials, in hexadecimal.
 std::string digest(const Scene& scene);

@@ -30,6 +30,8 @@ inline std::string irradiance_attribute(std::size_t index) {
     return "_IRRADIANCE_" + std::to_string(index);
 }
 
+constexpr const char* unshot_attribute = "_UNSHOT";
+
 /// B = E + ρ H cannot be solved for H accurately where ρ is near 0, nor where E outweighs ρ H, nor
 /// where both vary within what a vertex stands for.
 inline bool needs_irradiance(const Material& material) {

@@ -167,6 +167,7 @@ class Writer {
         if (with_irradiance)
             for (std::size_t a = 0; a < attributes_; ++a)
                 add_view(irradiance_attribute(a), with_irradiance, 12, array_buffer);
+        if (!s_.unshot.empty()) add_view(unshot_attribute, vertices_, 4, array_buffer);
         std::size_t patterned = 0;
         for (const Primitive& p : primitives_)
             if (is_patterned(p)) patterned += p.vertices.size();
@@ -312,6 +313,9 @@ class Writer {
                 attributes[name] =
                     add(accessor(name, irradiance_vertex, count, float_type, "VEC3"));
             }
+            if (!s_.unshot.empty())
+                attributes[unshot_attribute] =
+                    add(accessor(unshot_attribute, vertex, count, float_type, "SCALAR"));
             if (is_patterned(p)) {
                 for (const char* name : {"TEXCOORD_0", "TEXCOORD_1"})
                     attributes[name] =
@@ -465,6 +469,9 @@ class Writer {
                 const auto H = s_.irradiance[VertexId(vertex)];
                 if (p.irradiance) sink.put(three_of(a, [&](std::size_t c) { return H[c]; }));
             });
+        if (!s_.unshot.empty())
+            for_each_vertex(
+                [&](const Primitive&, std::uint32_t vertex) { sink.put(s_.unshot[vertex]); });
         for (const auto which : {&TextureCoordinates::reflectance, &TextureCoordinates::exitance})
             for_each_vertex([&](const Primitive& p, std::uint32_t vertex) {
                 if (!is_patterned(p)) return;

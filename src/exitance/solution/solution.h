@@ -80,6 +80,10 @@ struct Solution {
     /// Per vertex; empty if no material is patterned.
     std::vector<TextureCoordinates> texture_coordinates{};
     VertexField irradiance;  ///< rows: vertices; columns: groups × bands [irradiance_unit]
+    /// Per vertex while it is being solved, else empty: luminance of exitance that is still to be
+    /// sent on (solve/unshot.h) [exitance_unit]. Files carry it for those who look on; reading
+    /// drops it.
+    std::vector<float> unshot{};
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< counter-clockwise from the lit side
     std::vector<SolutionPart> parts;                      ///< cover `triangles` in order
     std::vector<Material> materials;
