@@ -42,6 +42,7 @@ export function writeLargeSolution(path, solved, cells, groups) {
   about.groups = light.map((_, g) => ({ name: `lamp ${g + 1}`, weight: 1 }))
   for (const name of ['emitters', 'luminaires', 'photometries', 'distant_lights', 'scenes']) delete about[name]
   about.grids = []
+  about.cameras = [{ name: 'above', eye: [2, 2.5, 1.5], look_at: [2, 0, -2], up: [0, 1, 0], fov_y: 50 }]
   json.materials = [{ name: 'floor', extensions: { KHR_materials_unlit: {} },
     extras: { exitance: { reflectance: [0.6, 0.6, 0.6], exitance: [0, 0, 0], two_sided: false } } }]
   json.meshes = [{ primitives: [{ attributes, indices: views.length - 1, material: 0,

@@ -5,6 +5,8 @@ import { readFileSync, writeFileSync } from 'node:fs'
 import { join } from 'node:path'
 import { after, before, describe, it } from 'node:test'
 import { pathToFileURL } from 'node:url'
+import { looksAsApproved } from './approved.mjs'
+import { makeHeadset } from './headset.mjs'
 import { writeLargeSolution } from './large_solution.mjs'
 import { folder, landed, launch, open, place, pose, program, radiance, removeFolder, root, run, serve } from './viewing.mjs'
 
@@ -64,6 +66,7 @@ look_at = [0, 0.5, 0]
     ['lamp 2', 'right lamp', [[2.6, 1.2, 2.4], [2.6, 1.8, 2.4], [3.2, 1.8, 2.4], [3.2, 1.2, 2.4]]]]
     .map(([name, material, corners]) => `[[polygon]]\nname = "${name}"\nmaterial = "${material}"\ncorners = ${JSON.stringify(corners.map(([x, y, z]) => [x, z, -y]))}\n`).join(''))
   run('solve', 'room.toml', '-o', 'room.glb', '--error', '0.1', '--quiet')
+  run('solve', join(root, 'scenes/office.toml'), '-o', 'office.glb', '--error', '0.3', '--quiet')
   browser = await launch()
 })
 after(async () => {
@@ -147,7 +150,7 @@ describe('light', () => {
 
 describe('the instrument', () => {
   it('reads what exitance probe says', async () => {
-    for (const file of ['cornell.glb', 'room.glb'])
+    for (const file of ['cornell.glb', 'room.glb', 'office.glb'])
       await visit(file, async (page) => {
         for (const [x, y] of [[450, 640], [300, 500], [450, 350], [620, 560]]) {
           const found = await reading(page, x, y)
@@ -179,7 +182,8 @@ describe('the instrument', () => {
     const colours = await page.evaluate(async ([x, y, value]) => {
       const { viewer } = window.exitance, { low, high } = viewer.range
       const scale = document.querySelector('#legend canvas')
-      const row = Math.min(127, Math.floor(128 * (1 - (value - low) / (high - low))))
+      const top = Number(document.querySelector('#legend .scale').dataset.top)
+      const row = Math.min(239, Math.floor(240 * (1 - value / top)))
       const legend = scale.getContext('2d').getImageData(0, row, 1, 1).data
       const image = await createImageBitmap(await viewer.picture(viewer.canvas.clientWidth, viewer.canvas.clientHeight))
       const copy = new OffscreenCanvas(image.width, image.height).getContext('2d')
@@ -189,9 +193,42 @@ describe('the instrument', () => {
     }, [450, 640, found.illuminance])
     colours.legend.forEach((v, c) => near(colours.seen[c], v, 4, 'colour of the legend'))
     for (const [value, bottom] of colours.marks) near(bottom, 100 * (value - colours.low) / (colours.high - colours.low), 0.1)
+    const [lower, upper] = await Promise.all(['#legend-low', '#legend-high'].map((id) => page.locator(id).boundingBox()))
+    assert.ok(upper.y < lower.y)
+    await page.mouse.move(upper.x + 5, upper.y + 7)
+    await page.mouse.down()
+    await page.mouse.move(upper.x + 5, (upper.y + lower.y) / 2 + 7, { steps: 3 })
+    await page.mouse.up()
+    near(await page.evaluate(() => window.exitance.viewer.range.high), colours.high / 2, 0.02 * colours.high, 'half way down')
+    await page.focus('#legend-low')
+    await page.keyboard.press('PageUp')
+    assert.ok((await page.evaluate(() => window.exitance.viewer.range.low)) > 0)
+    assert.match(await page.getAttribute('#legend-low', 'aria-valuetext'), /^0\.\d+ W/)
+    await page.fill('#range-low', '0')
     await page.fill('#range-high', '2')
     await page.press('#range-high', 'Enter')
     assert.deepEqual(await page.evaluate(() => window.exitance.viewer.stage.uniforms.range.value.toArray()), [0, 2])
+  }))
+
+  it('contours lie where the illuminance is a multiple of their step', () => visit('cornell.glb', async (page) => {
+    // Along a row of pixels of the back wall, the picture changes where a contour is.
+    const levels = await page.evaluate(async () => {
+      const { viewer } = window.exitance, { canvas } = viewer
+      const row = async () => {
+        viewer.settle()
+        const copy = new OffscreenCanvas(canvas.clientWidth, canvas.clientHeight).getContext('2d')
+        copy.drawImage(await createImageBitmap(await viewer.picture(canvas.clientWidth, canvas.clientHeight)), 0, 0)
+        return copy.getImageData(0, 300, canvas.clientWidth, 1).data
+      }
+      const plain = await row()
+      viewer.setContour(0.1)
+      const lined = await row(), found = []
+      for (let x = 340; x < 560; ++x)
+        if (Math.abs(lined[4 * x] - plain[4 * x]) > 60) found.push(viewer.readAt(x + 0.5, 300.5).illuminance / 0.1)
+      return found
+    })
+    assert.ok(levels.length >= 2, `${levels}`)
+    for (const level of levels) near(level, Math.round(level), 0.2, 'multiple of the step')
   }))
 
   it('a section shows what is behind', () => visit('cornell.glb', async (page) => {
@@ -337,6 +374,177 @@ describe('movement', () => {
   }))
 })
 
+describe('by itself', () => {
+  it('automatic flies through the places until somebody moves', () => visit('room.glb', async (page) => {
+    await page.click('#automatic')
+    // It begins at the first camera and comes by the second.
+    const near = (x, y, z) => page.waitForFunction(([a, b, c]) => {
+      const { eye } = window.exitance.viewer.pose
+      return Math.hypot(eye.x - a, eye.y - b, eye.z - c) < 0.15
+    }, [x, y, z], { timeout: 20000, polling: 50 })
+    await near(0.3, 1.6, -0.3)
+    await page.evaluate(() => (window.exitance.viewer.movement.advanceTime(3)))
+    await near(3.5, 1.6, -2.5)
+    await page.locator('#view').focus()
+    await page.keyboard.press('ArrowLeft')
+    assert.equal(await page.isChecked('#automatic'), false)
+    const there = await place(page)
+    await page.waitForTimeout(300)
+    assert.deepEqual(await place(page), there)
+  }))
+
+  it('right click opens a menu: manual or automatic', () => visit('room.glb', async (page) => {
+    await page.mouse.click(300, 400, { button: 'right' })
+    assert.ok(await page.locator('#menu').isVisible())
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'menu-manual')
+    await page.keyboard.press('ArrowDown')
+    await page.keyboard.press('Enter')
+    assert.ok(await page.evaluate(() => window.exitance.viewer.movement.automatic))
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'view')
+    await page.keyboard.press('Shift+F10')
+    assert.equal(await page.getAttribute('#menu-automatic', 'aria-checked'), 'true')
+    await page.keyboard.press('Escape')
+    assert.ok(!(await page.locator('#menu').isVisible()))
+    await page.mouse.click(300, 400, { button: 'right' })
+    await page.click('#menu-keep')
+    assert.equal(await page.locator('#bookmarks button').count(), 1)
+    await page.mouse.click(300, 400, { button: 'right' })
+    await page.mouse.click(300, 300)
+    assert.ok(!(await page.locator('#menu').isVisible()), 'a click elsewhere closes it')
+  }))
+
+  it('a click turns to a place and from then on about it', () => visit('cornell.glb', async (page) => {
+    const [eye, point] = [(await place(page)).eye, (await reading(page, 300, 450)).point]
+    await page.mouse.click(300, 450)
+    await page.waitForFunction(() => window.exitance.viewer.movement.flying)
+    await landed(page)
+    const there = await place(page)
+    there.eye.forEach((v, i) => near(v, eye[i], 1e-4, 'eye'))
+    there.look_at.forEach((v, i) => near(v, point[i], 1e-3, 'what is looked at'))
+  }))
+
+  it('a gamepad and two fingers', () => visit('room.glb', async (page) => {
+    const start = await place(page)
+    await page.evaluate(() => {
+      window.pad = { connected: true, axes: [0, -1, 0, 0] }
+      navigator.getGamepads = () => [window.pad]
+    })
+    await page.waitForFunction(([x, , z]) => Math.hypot(window.exitance.viewer.pose.eye.x - x, window.exitance.viewer.pose.eye.z - z) > 0.1, start.eye)
+    await page.evaluate(() => (window.pad.axes = [0, 0, 0.5, 0]))
+    const { azimuth } = await pose(page)
+    await page.waitForFunction((a) => Math.abs(window.exitance.viewer.pose.azimuth * 180 / Math.PI - a) > 2, azimuth)
+    await page.evaluate(() => (window.pad.axes = [0, 0, 0, 0]))
+    const before = await pose(page)
+    await page.evaluate(() => {
+      const send = (type, pointerId, x) => window.exitance.viewer.canvas.dispatchEvent(
+        new PointerEvent(type, { pointerId, pointerType: 'touch', clientX: x, clientY: 300, buttons: 1, bubbles: true }))
+      send('pointerdown', 1, 300)
+      send('pointerdown', 2, 400)
+      send('pointermove', 2, 500)
+      send('pointerup', 1, 300)
+      send('pointerup', 2, 500)
+    })
+    near((await pose(page)).distance, before.distance / 2, 1e-6, 'fingers twice as far apart: half as far away')
+  }))
+})
+
+describe('a headset', () => {
+  it('is not offered where there is none', () => visit('room.glb', async (page) => {
+    assert.ok(!(await page.locator('#headset').isVisible()))
+  }))
+
+  it('enters where one stood; sticks walk, turn and teleport; leaving looks where one looked', () => visit('room.glb', async (page) => {
+    const start = await place(page)
+    await page.click('#headset')
+    await page.waitForFunction(() => window.headset.frames > 3)
+    assert.equal(await page.getAttribute('#headset', 'aria-pressed'), 'true')
+    assert.deepEqual(await page.evaluate(() => window.headset.asked), { mode: 'immersive-vr', wishes: { requiredFeatures: ['local-floor'] } })
+    const state = () => page.evaluate(() => {
+      const { rig, camera } = window.exitance.viewer.stage
+      const way = camera.getWorldDirection(rig.position.clone())
+      const head = rig.localToWorld(rig.position.clone().set(...window.headset.head))
+      return { feet: rig.position.toArray(), head: head.toArray(), way: way.toArray(), turn: rig.rotation.y }
+    })
+    const entered = await state()
+    near(entered.feet[0], start.eye[0], 1e-4)
+    near(entered.feet[1], 0, 1e-3, 'the floor')
+    near(entered.head[1], 1.6, 1e-3, 'the height of the head is the wearer\'s')
+    near(Math.atan2(-entered.way[0], -entered.way[2]), Math.atan2(-(start.look_at[0] - start.eye[0]), -(start.look_at[2] - start.eye[2])), 1e-3)
+    // Both eyes see the lit room.
+    const eyes = await page.evaluate(async () => {
+      const { stage } = window.exitance.viewer, gl = stage.renderer.getContext()
+      await new Promise((resolve) => stage.renderer.xr.getSession().requestAnimationFrame(resolve))
+      const pixel = (x) => {
+        const out = new Uint8Array(4)
+        gl.readPixels(x, 100, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out)
+        return out[0] + out[1] + out[2]
+      }
+      const { camera } = stage
+      stage.renderer.render(stage.scene, camera)
+      return [pixel(100), pixel(300)]
+    })
+    assert.ok(eyes.every((light) => light > 60), `${eyes}`)
+
+    await page.evaluate(() => window.headset.sources.push({ handedness: 'left', gamepad: { axes: [0, 0, 0, -1] } }))
+    await page.waitForFunction(([x, , z]) => {
+      const { x: a, z: b } = window.exitance.viewer.stage.rig.position
+      return Math.hypot(a - x, b - z) > 0.2
+    }, entered.feet)
+    const walked = await state()
+    const by = [0, 2].map((c) => walked.feet[c] - entered.feet[c]), length = Math.hypot(...by)
+    near(by[0] / length, entered.way[0] / Math.hypot(entered.way[0], entered.way[2]), 1e-3, 'along the sight')
+    await page.evaluate(() => {
+      window.exitance.viewer.movement.speed = 40
+      window.framesThen = window.headset.frames
+    })
+    await page.waitForFunction(() => window.headset.frames > window.framesThen + 20)
+    const { head } = await state()
+    assert.ok(head[0] > 0 && head[0] < 4 && head[2] < 0 && head[2] > -3, `walls stop: ${head}`)
+
+    await page.evaluate(() => (window.headset.sources = [{ handedness: 'right', gamepad: { axes: [0, 0, 1, 0] } }]))
+    const facing = await state()
+    await page.waitForFunction((t) => Math.abs(window.exitance.viewer.stage.rig.rotation.y - t) > 0.1, facing.turn)
+    await page.waitForTimeout(200)
+    near((await state()).turn - facing.turn, -Math.PI / 6, 1e-6, 'once, by 30 degrees')
+
+    const after = await state()
+    await page.click('#headset')
+    await page.waitForFunction(() => document.getElementById('headset').getAttribute('aria-pressed') === 'false')
+    const back = await place(page)
+    back.eye.forEach((v, i) => near(v, after.head[i], 1e-3, 'where one left'))
+    assert.deepEqual(await page.evaluate(() => window.exitance.viewer.stage.rig.position.toArray()), [0, 0, 0])
+  }, { init: makeHeadset }))
+
+  it('teleports to the floor that is pointed at, and nowhere else', () => visit('room.glb', async (page) => {
+    await page.click('#headset')
+    await page.waitForFunction(() => window.headset.frames > 3)
+    const point = (slope) => page.evaluate(async (tilt) => {
+      const { rig } = window.exitance.viewer.stage
+      rig.position.set(2, 0, -1.5)
+      rig.rotation.y = 0
+      const [c, s] = [Math.cos(tilt), Math.sin(tilt)]
+      const source = { handedness: 'right', gamepad: { axes: [0, 0, 0, -1] }, targetRaySpace: [1, 0, 0, 0, 0, c, -s, 0, 0, s, c, 0, 0, 1, 0, 1] }
+      window.headset.sources = [source]
+      const frames = (n) => new Promise((resolve) => {
+        const start = window.headset.frames
+        const wait = () => (window.headset.frames > start + n ? resolve() : setTimeout(wait, 10))
+        wait()
+      })
+      await frames(3)
+      source.gamepad.axes = [0, 0, 0, 0]
+      await frames(3)
+      return rig.position.toArray()
+    }, slope)
+    // From 1 m up, 45 degrees down: 1 m ahead.
+    const [x, , z] = await point(Math.PI / 4)
+    near(x, 2, 1e-3)
+    near(z, -2.5, 1e-2)
+    const [a, , b] = await point(-0.2)
+    near(a, 2, 1e-3, 'a wall is nowhere to stand')
+    near(b, -1.5, 1e-3)
+  }, { init: makeHeadset }))
+})
+
 describe('every control', () => {
   const uniform = (page, name) => page.evaluate((n) => window.exitance.viewer.stage.uniforms[n].value, name)
 
@@ -362,6 +570,7 @@ describe('every control', () => {
     const plain = await picture()
     await page.click('#wires')
     assert.notEqual(await picture(), plain, 'the mesh is drawn')
+    assert.match(await page.textContent('#levels'), /^012/, 'levels of subdivision')
     await page.click('#wires')
     assert.equal(await picture(), plain)
     await page.selectOption('#look', 'illuminance')
@@ -496,6 +705,76 @@ describe('taking away', () => {
 })
 
 describe('looks', () => {
+  /** Shows `file` and lets it come to rest. */
+  const pictured = (file, name, options, prepare) => visit(file, async (page) => {
+    await prepare?.(page)
+    await page.waitForFunction(() => !window.exitance.viewer.movement.flying)
+    await page.evaluate(() => window.exitance.viewer.settle())
+    await page.waitForTimeout(300)
+    await looksAsApproved(page, name)
+  }, options)
+
+  it('as approved: the office, dark', () => pictured('office.glb', 'office', { viewport: { width: 1100, height: 700 }, colorScheme: 'dark' },
+    (page) => page.mouse.move(500, 440)))
+  it('as approved: false colours and contours, light', () => pictured('cornell.glb', 'false_colour',
+    { viewport: { width: 1100, height: 700 }, colorScheme: 'light' }, async (page) => {
+      await page.selectOption('#look', 'illuminance')
+      await page.click('#contours')
+    }))
+  it('as approved: a phone, German', () => pictured('office.glb', 'phone',
+    { viewport: { width: 390, height: 780 }, colorScheme: 'light', locale: 'de-DE' }, async (page) => {
+      await page.click('#panel-toggle')
+      await page.mouse.move(180, 300)
+    }))
+  it('as approved: the mesh by level, the help', () => pictured('cornell.glb', 'help',
+    { viewport: { width: 1100, height: 700 }, colorScheme: 'dark' }, async (page) => {
+      await page.click('#wires')
+      await page.locator('#view').focus()
+      await page.keyboard.press('F1')
+    }))
+
+  it('the keyboard alone: every stop is seen, none is a trap, panels widen', () => visit('room.glb', async (page) => {
+    await page.locator('#view').focus()
+    const stops = []
+    for (let i = 0; i < 80; ++i) {
+      await page.keyboard.press('Tab')
+      const stop = await page.evaluate(() => {
+        const { activeElement: e } = document, box = e.getBoundingClientRect()
+        return { id: e.id || e.textContent, tag: e.tagName, seen: box.width > 0 && box.height > 0, outlined: getComputedStyle(e).outlineStyle }
+      })
+      if (stop.tag === 'BODY' || stop.id === 'view') break
+      stops.push(stop)
+    }
+    const ids = stops.map((s) => s.id)
+    assert.equal(new Set(ids).size, ids.length, `once each: ${ids}`)
+    assert.ok(stops.length > 20 && stops.length < 80, `${stops.length} stops, then round`)
+    for (const stop of stops) assert.ok(stop.seen && stop.outlined !== 'none', `${stop.id} shows that it has the focus`)
+    const order = ['orbit', 'help-open', 'panel-toggle', 'weight-0', 'exposure-automatic', 'look', 'gravity'].map((id) => ids.indexOf(id))
+    assert.deepEqual(order, [...order].sort((a, b) => a - b), `as they stand: ${ids}`)
+    assert.ok(order.every((at) => at >= 0), `${ids}`)
+    const width = () => page.evaluate(() => document.getElementById('panel').clientWidth)
+    const before = await width()
+    await page.focus('#panel-edge')
+    await page.keyboard.press('ArrowLeft')
+    near(await width(), before + 16, 1)
+    assert.equal(Number(await page.getAttribute('#panel-edge', 'aria-valuenow')), await width() + 2)
+    // Sliders, switches and the way of moving.
+    await page.focus('#weight-0')
+    await page.keyboard.press('Home')
+    assert.equal((await page.evaluate(() => window.exitance.viewer.mix.groups[0])).weight, 0)
+    await page.focus('#mute-1')
+    await page.keyboard.press('Space')
+    assert.equal(await page.getAttribute('#mute-1', 'aria-pressed'), 'true')
+    await page.focus('#orbit')
+    await page.keyboard.press('ArrowRight')
+    assert.equal(await page.evaluate(() => window.exitance.viewer.movement.mode), 'walk')
+    await page.focus('#help-open')
+    await page.keyboard.press('Enter')
+    await page.keyboard.press('Escape')
+    assert.ok(!(await page.locator('#help').isVisible()))
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'help-open', 'back where one was')
+  }))
+
   it('every control has a name and Tab finds it', () => visit('room.glb', async (page) => {
     const nameless = await page.evaluate(() => [...document.querySelectorAll('button, input, select, canvas#view')].filter((e) =>
       !(e.getAttribute('aria-label') || e.textContent.trim() || e.closest('label')?.textContent.trim())).map((e) => e.outerHTML))
@@ -552,6 +831,23 @@ function views(path) {
   }))
 }
 
+describe('many light groups', () => {
+  it('beyond what a vertex carries, all count', async () => {
+    writeLargeSolution(glb('many.glb'), glb('cornell.glb'), 20, 30)
+    await visit('many.glb', async (page) => {
+      const at = [450.5, 350.5], all = await radiance(page, ...at), seen = await reading(page, ...at)
+      near(all[1], 0.9 / (0.2126 + 0.7152 * 0.9 + 0.0722 * 0.7) * seen.exitance / Math.PI, 0.01 * all[1], 'all thirty')
+      for (const g of [3, 11, 12, 29]) {
+        await page.click(`#solo-${g}`)
+        const [, one] = await radiance(page, ...at)
+        near(one / all[1], seen.shares[g], 0.01 * seen.shares[g] + 1e-5, `lamp ${g + 1}`)
+        await page.click(`#solo-${g}`)
+      }
+      assert.deepEqual(await radiance(page, ...at), all)
+    })
+  })
+})
+
 describe('live', () => {
   it('a scene grows before one\'s eyes and ends as the file on disk', async () => {
     const server = await serve(join(root, 'scenes/cornell.toml'), '--error', '0.007', '-o', 'grown.glb')
@@ -562,6 +858,7 @@ describe('live', () => {
         window.exitance.server.addEventListener('shown', () => window.sizes.push(window.exitance.viewer.solution.indices.length / 3))
       })
       await page.waitForFunction(() => window.exitance.server.shown >= 3, null, { timeout: 120000 })
+      assert.ok(await page.evaluate(() => window.exitance.viewer.solution.unshot?.some((v) => v > 0) ?? window.exitance.viewer.solution.error), 'what is unshot')
       await page.click('#solving-stop', { timeout: 5000 }).catch(() => {}) // or it is done already
       await page.waitForFunction(() => document.getElementById('solving').hidden, null, { timeout: 120000 })
       const last = await page.evaluate(() => new Promise((resolve) => {

@@ -38,9 +38,10 @@ export async function serve(...words) {
   }) }
 }
 
-/** A page that has shown a solution; `faults` collects what a page may never do. */
-export async function open(browser, url, options = {}) {
+/** A page that has shown a solution, after the script `init`; `faults` collects what a page may never do. */
+export async function open(browser, url, { init, ...options } = {}) {
   const context = await browser.newContext({ viewport: { width: 900, height: 700 }, locale: 'en-GB', ...options })
+  if (init) await context.addInitScript(init)
   const page = await context.newPage()
   const faults = []
   page.on('console', (m) => (m.type() === 'error' || m.type() === 'warning') && faults.push(m.text()))

@@ -8,8 +8,9 @@ const KEYS: [string, [string, string][]][] = [
     ['Arrows', 'azimuth and elevation by 1°'], ['z x', 'zoom in, out'], ['a s', 'move viewpoint and reference along, against the line of sight']]],
   ['Walk', [['W A S D', 'walk'], ['Shift', 'run'], ['Drag, arrows', 'look'], ['E Q', 'rise, sink (feet off the ground)'],
     ['Mouse look', 'looks without dragging, until Esc']]],
-  ['Both', [['Double-click', 'go there'], ['r', 'back to the start'], ['Tab', 'to the controls and on'], ['F1 F2', 'open, close this help'],
-    ['Esc', 'leave; twice ends the visit'], ['Gamepad', 'left stick walks, right stick looks']]],
+  ['Both', [['Click', 'in orbit: turn to it and about it'], ['Double-click', 'go there'], ['Right click', 'menu: manual, automatic'], ['r', 'back to the start'], ['Tab', 'to the controls and on'], ['F1 F2', 'open, close this help'],
+    ['Esc', 'leave; twice ends the visit'], ['Gamepad', 'left stick walks, right stick looks'],
+    ['Headset', 'trigger or right stick forward teleports, right stick turns, left stick walks']]],
   ['Light', [['Brightness', 'double-click: as solved'], ['S M', 'only this group; without it']]],
 ]
 

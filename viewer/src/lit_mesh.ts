@@ -5,6 +5,7 @@
 import * as THREE from 'three'
 import { MeshBVH } from 'three-mesh-bvh'
 import { type Columns, floatTexture, type LookUniforms, REST_WIDTH, surfaceMaterial } from './shading'
+import { meshLines } from './subdivision'
 import type { Primitive, Solution, TextureImage } from './solution'
 
 // WebGL 2 promises 16 attributes; position, normal and two texture places take four. The light of
@@ -27,15 +28,28 @@ function same(a: Float32Array | Uint32Array, b: Float32Array | Uint32Array): boo
   return a.length === b.length && a.every((v, i) => v === b[i])
 }
 
+function replace(mesh: THREE.Mesh, column: number, values: Float32Array): void {
+  const attribute = mesh.geometry.getAttribute(`column${column}`) as THREE.BufferAttribute
+  if (same(attribute.array as Float32Array, values)) return
+  attribute.array = values
+  attribute.needsUpdate = true
+}
+
+function grey(values: Float32Array): Float32Array {
+  return Float32Array.from({ length: 3 * values.length }, (_, i) => values[Math.floor(i / 3)])
+}
+
 const isPatterned = (solution: Solution, p: Primitive) =>
   !!(solution.materials[p.material].reflectancePattern || solution.materials[p.material].exitancePattern)
 
 export class LitMesh extends THREE.Group {
   readonly geometry = new THREE.BufferGeometry()
-  readonly bvh: MeshBVH
+  private tree?: MeshBVH
   private shine: THREE.Mesh          // columns: exitance
   private receive: THREE.Mesh        // columns: irradiance; patterns, and everything when it is measured
-  private wires?: THREE.Mesh
+  private waiting?: THREE.Mesh       // column: what is still unshot
+  private wires?: THREE.Group
+  private wiresShown = false
   private columns: number
   private restLight: THREE.DataTexture[] = []
 
@@ -45,9 +59,6 @@ export class LitMesh extends THREE.Group {
     const attribute = (values: Float32Array, width: number) => new THREE.BufferAttribute(values, width)
     this.geometry.setAttribute('position', attribute(solution.positions, 3))
     this.geometry.setIndex(new THREE.BufferAttribute(solution.indices, 1))
-    // In the order of the file: a triangle's number says which surface it belongs to.
-    this.bvh = new MeshBVH(this.geometry, { indirect: true })
-
     this.geometry.setAttribute('normal', attribute(solution.normals, 3))
     if (solution.uv0) this.geometry.setAttribute('uv0', attribute(solution.uv0, 2))
     if (solution.uv1) this.geometry.setAttribute('uv1', attribute(solution.uv1, 2))
@@ -56,9 +67,19 @@ export class LitMesh extends THREE.Group {
     this.receive = new THREE.Mesh(receiving, this.materials(receiving, 'irradiance', textures))
     const box = new THREE.Box3().setFromBufferAttribute(this.geometry.getAttribute('position') as THREE.BufferAttribute)
     this.geometry.boundingBox = box
-    for (const mesh of [this.shine, this.receive]) mesh.frustumCulled = false
-    this.add(this.shine, this.receive)
-    this.showIrradiance(false)
+    if (solution.unshot) this.waiting = this.unshot(solution.unshot)
+    for (const mesh of [this.shine, this.receive, this.waiting]) {
+      if (!mesh) continue
+      mesh.frustumCulled = false
+      this.add(mesh)
+    }
+    this.showColumns('exitance')
+  }
+
+  /** What answers rays; made when first asked for. In the order of the file: a triangle's number says
+   * which surface it belongs to. */
+  get bvh(): MeshBVH {
+    return (this.tree ??= new MeshBVH(this.geometry, { indirect: true }))
   }
 
   static async make(solution: Solution, shared: LookUniforms): Promise<LitMesh> {
@@ -75,14 +96,12 @@ export class LitMesh extends THREE.Group {
     const now = this.solution
     const shape = (s: Solution) => JSON.stringify([s.primitives, s.materials, s.groups, s.textures.length])
     if (solution.groups.length > this.columns || !same(now.indices, solution.indices) || !same(now.positions, solution.positions) || !same(now.normals, solution.normals)
-      || shape(now) !== shape(solution)) return false
+      || shape(now) !== shape(solution) || !now.unshot !== !solution.unshot) return false
     for (const [mesh, columns] of [[this.shine, 'exitance'], [this.receive, 'irradiance']] as const)
       solution[columns].slice(0, this.columns).forEach((column, k) => {
-        const attribute = mesh.geometry.getAttribute(`column${k}`) as THREE.BufferAttribute
-        if (same(attribute.array as Float32Array, column)) return
-        attribute.array = column
-        attribute.needsUpdate = true
+        replace(mesh, k, column)
       })
+    if (this.waiting) replace(this.waiting, 0, grey(solution.unshot!))
     this.solution = solution
     return true
   }
@@ -125,25 +144,43 @@ export class LitMesh extends THREE.Group {
     return out
   }
 
-  /** Draws from the irradiance of all surfaces, not only of those with patterns. */
-  showIrradiance(everywhere: boolean): void {
-    this.shine.visible = !everywhere
+  /** One column of what is still unshot, the same in all bands. */
+  private unshot(values: Float32Array): THREE.Mesh {
+    const geometry = this.withColumns([grey(values)])
+    const columns: Columns = { are: 'exitance', count: 1, rest: 0, vertices: values.length }
+    const shared = { ...this.shared, factors: { value: new Float32Array([1, 1, 1]) } }
+    const [material] = this.solution.materials
+    return new THREE.Mesh(geometry, surfaceMaterial(columns, { ...material, reflectancePattern: undefined, exitancePattern: undefined },
+      0, [], shared))
+  }
+
+  /** Draws from the exitance, where no pattern makes it vary within a triangle; from the irradiance of
+   * all surfaces; or what is still unshot. */
+  showColumns(which: 'exitance' | 'irradiance' | 'unshot'): void {
+    this.shine.visible = which === 'exitance'
     const materials = this.receive.material as THREE.Material[]
     this.solution.primitives.forEach((p, i) => {
-      materials[i].visible = everywhere || isPatterned(this.solution, p)
+      materials[i].visible = which === 'irradiance' || isPatterned(this.solution, p)
     })
-    this.receive.visible = materials.some((m) => m.visible)
+    this.receive.visible = which !== 'unshot' && materials.some((m) => m.visible)
+    if (this.waiting) this.waiting.visible = which === 'unshot'
   }
 
   showWires(shown: boolean): void {
     if (shown && !this.wires) {
-      const material = new THREE.MeshBasicMaterial({ wireframe: true, color: 0x7fb4ff, transparent: true, opacity: 0.35,
-        polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -1 })
-      this.wires = new THREE.Mesh(this.geometry, material)
-      this.wires.frustumCulled = false
+      this.wires = meshLines(this.solution, this.geometry.getAttribute('position') as THREE.BufferAttribute)
       this.add(this.wires)
     }
-    if (this.wires) this.wires.visible = shown
+    this.wiresShown = shown
+    this.linesVisible = true
+  }
+  /** Whether lines that are asked for are drawn now. */
+  set linesVisible(visible: boolean) {
+    if (this.wires) this.wires.visible = visible && this.wiresShown
+  }
+  /** The levels of the lines that are shown. */
+  get levels(): number[] {
+    return this.wires?.children.map((lines) => lines.userData.level as number) ?? []
   }
 
   /** Sets what each group counts; `factors` are three per group. */
@@ -160,12 +197,15 @@ export class LitMesh extends THREE.Group {
   }
 
   dispose(): void {
-    for (const mesh of [this.shine, this.receive]) {
-      mesh.geometry.dispose()
-      for (const material of mesh.material as THREE.Material[]) material.dispose()
+    for (const mesh of [this.shine, this.receive, this.waiting]) {
+      mesh?.geometry.dispose()
+      for (const material of [mesh?.material ?? []].flat()) material.dispose()
     }
     for (const texture of this.restLight) texture.dispose()
     this.geometry.dispose()
-    ;(this.wires?.material as THREE.Material | undefined)?.dispose()
+    for (const lines of (this.wires?.children ?? []) as THREE.LineSegments[]) {
+      lines.geometry.dispose()
+      ;(lines.material as THREE.Material).dispose()
+    }
   }
 }

@@ -5,6 +5,7 @@ import { button, check, choice, element, numberField, row, section, slider } fro
 import { decimals } from './numbers'
 import { roundStep } from './false_colour'
 import type { Look } from './shading'
+import { colourOfLevel } from './subdivision'
 import type { ToneCurve } from './tone'
 import type { Viewer } from './viewer'
 
@@ -30,8 +31,8 @@ export function exposurePanel(viewer: Viewer): HTMLElement {
 export function lookPanel(viewer: Viewer): HTMLElement {
   const received = viewer.solution.quantity === 'photometric' ? 'Illuminance' : 'Irradiance'
   const look = choice<Look>('Show', 'look', [['picture', 'Picture'], ['illuminance', `${received} (false colour)`],
-    ['exitance', 'Exitance (false colour)'], ['normals', 'Normals'], ['reflectance', 'Reflectance']], viewer.look,
-  (value) => viewer.setLook(value))
+    ['exitance', 'Exitance (false colour)'], ['normals', 'Normals'], ['reflectance', 'Reflectance'],
+    ...(viewer.solution.unshot ? [['unshot', 'Unshot (false colour)'] as [Look, string]] : [])], viewer.look, (value) => viewer.setLook(value))
 
   const low = numberField('Lowest value of the colours', 'range-low', 0, (v) => viewer.setRange(v, viewer.range.high))
   const high = numberField('Highest value of the colours', 'range-high', 1, (v) => viewer.setRange(viewer.range.low, v))
@@ -42,7 +43,8 @@ export function lookPanel(viewer: Viewer): HTMLElement {
   const step = numberField('Step of the contours', 'contour-step', 1, (v) => {
     if (viewer.contour > 0 && v > 0) viewer.setContour(v)
   })
-  const wires = check('Mesh', 'wires', viewer.wires, (on) => viewer.setWires(on))
+  const wires = check('Mesh by level', 'wires', viewer.wires, (on) => viewer.setWires(on))
+  const levels = element('div', { id: 'levels', class: 'faint', 'aria-label': 'How often elements were halved' })
 
   const cut = choice('Section', 'section-axis', [['-1', 'no section'], ['1', 'cut from above'], ['0', 'cut across'],
     ['2', 'cut along']], '-1', (v) => viewer.setSection({ axis: Number(v) }))
@@ -53,14 +55,20 @@ export function lookPanel(viewer: Viewer): HTMLElement {
 
   const refresh = () => {
     look.value = viewer.look
-    range.hidden = viewer.look !== 'illuminance' && viewer.look !== 'exitance'
+    range.hidden = !viewer.inFalseColour
     low.value = String(Number(viewer.range.low.toPrecision(4)))
     high.value = String(Number(viewer.range.high.toPrecision(4)))
     if (viewer.contour > 0) step.value = String(viewer.contour)
     else step.value = String(Number(roundStep(viewer.range.high - viewer.range.low, 8).toPrecision(4)))
     place.hidden = viewer.section.axis < 0
+    levels.hidden = !viewer.wires
+    levels.replaceChildren(...viewer.stage.mesh.levels.map((level) => {
+      const swatch = element('i')
+      swatch.style.background = colourOfLevel(level).getStyle()
+      return element('span', {}, swatch, String(level))
+    }))
   }
   viewer.addEventListener('settings', refresh)
   refresh()
-  return section('Show', 'panel-show', true, look, range, row(contours, step), wires, cut, place)
+  return section('Show', 'panel-show', true, look, range, row(contours, step), wires, levels, cut, place)
 }

@@ -2,8 +2,11 @@
 // The walkthrough, put together.
 
 import './style.css'
+import { aboutPanel } from './about_panel'
+import { ContextMenu } from './context_menu'
 import { byId } from './elements'
 import { FloatingLabels } from './floating_labels'
+import { Headset } from './headset'
 import { setUpHelp } from './help'
 import { setUpLegend } from './legend'
 import { lightPanel } from './light_panel'
@@ -18,6 +21,8 @@ import type { Solution } from './solution'
 import { embeddedSolution, Server } from './source'
 import { Tape } from './tape'
 import { Viewer } from './viewer'
+
+const LEAST_WIDTH = 220  // of the controls [px]
 
 const message = (text: string) => (byId('message').textContent = text)
 
@@ -55,14 +60,23 @@ function setUpPanel(): void {
   }
   toggle.addEventListener('click', () => show(panel.hidden))
   if (innerWidth <= 640) show(false)
-  const widen = (width: number) => (panel.style.width = `${Math.min(innerWidth - 40, Math.max(220, width))}px`)
+  const widen = (width: number) => {
+    const most = innerWidth - 40, to = Math.min(most, Math.max(LEAST_WIDTH, width))
+    panel.style.width = `${to}px`
+    tell(to, most)
+  }
+  const tell = (now: number, most: number) => {
+    for (const [name, value] of [['min', LEAST_WIDTH], ['max', most], ['now', now]] as const)
+      edge.setAttribute(`aria-value${name}`, String(Math.round(value)))
+  }
+  tell(panel.offsetWidth, innerWidth - 40)
   edge.addEventListener('pointerdown', (event) => edge.setPointerCapture(event.pointerId))
   edge.addEventListener('pointermove', (event) => {
     if (event.buttons & 1) widen(panel.getBoundingClientRect().right - event.clientX)
   })
   edge.addEventListener('keydown', (event) => {
     const step = event.key === 'ArrowLeft' ? 16 : event.key === 'ArrowRight' ? -16 : 0
-    if (step) widen(panel.clientWidth + step)
+    if (step) widen(panel.offsetWidth + step)
   })
 }
 
@@ -85,20 +99,25 @@ function setUpEscape(server: Server | null): void {
 function fillPanel(viewer: Viewer, grids: SensorGrids, tape: Tape): void {
   const open = new Map([...document.querySelectorAll('#panel details')].map((d) => [d.id, (d as HTMLDetailsElement).open]))
   const panels = [lightPanel(viewer), exposurePanel(viewer), lookPanel(viewer), placesPanel(viewer),
-    measurePanel(viewer, grids, tape), savePanel(viewer)]
+    measurePanel(viewer, grids, tape), savePanel(viewer), aboutPanel(viewer)]
   for (const panel of panels) (panel as HTMLDetailsElement).open = open.get(panel.id) ?? (panel as HTMLDetailsElement).open
   byId('panel-content').replaceChildren(...panels)
 }
 
 /** Rebuilt only where the groups, scenes or cameras are others than before. */
 function signature(solution: Solution): string {
-  return JSON.stringify([solution.groups, solution.scenes, solution.cameras, solution.grids, solution.quantity])
+  return JSON.stringify([solution.groups, solution.scenes, solution.cameras, solution.grids, solution.quantity, !!solution.unshot])
 }
 
 function start(): void {
   const viewer = new Viewer(byId<HTMLCanvasElement>('view'))
   const labels = new FloatingLabels(viewer, byId('labels'))
   const grids = new SensorGrids(viewer, labels), tape = new Tape(viewer, labels)
+  const headset = new Headset(viewer, byId<HTMLButtonElement>('headset'))
+  viewer.inHeadset = (seconds, frame) => headset.advance(seconds, frame)
+  viewer.movement.takesTap = (x, y) => tape.tap(x, y)
+  viewer.movement.onTap = (x, y) => viewer.lookAt(x, y)
+  new ContextMenu(viewer, document.body)
   let shape = ''
   const show = async (solution: Solution) => {
     const first = shape === ''

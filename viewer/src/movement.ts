@@ -3,10 +3,12 @@
 // keys and gamepad change one pose; flights change it smoothly.
 
 import * as THREE from 'three'
-import { between, copyOf, lineOfSight, moved, orbited, type Pose, reference, turned, zoomed } from './pose'
+import { FlightPath } from './flight_path'
+import { between, copyOf, lineOfSight, moved, orbited, type Pose, poseLooking, reference, turned, zoomed } from './pose'
 
 export type Mode = 'orbit' | 'walk'
 const DEGREE = Math.PI / 180
+const DOUBLE = 350  // ms from a tap to the second
 const ARROWS: Record<string, [number, number]> = {
   ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1],
 }
@@ -19,18 +21,27 @@ export class Movement extends EventTarget {
   mode: Mode = 'orbit'
   gravity = true
   automatic = false
+  /** The places that automatic mode flies through; fewer than two: it turns slowly instead. */
+  stops: () => Pose[] = () => []
   /** Metres per second on foot, and how high the eyes are. */
   speed = 1.4
   eyeHeight = 1.6
   feel: Feeler = () => undefined
+  /** Whether somebody takes a tap for something else than moving. */
+  takesTap: (x: number, y: number) => boolean = () => false
+  /** A tap that no second one follows. */
   onTap: (x: number, y: number) => void = () => {}
   onDoubleTap: (x: number, y: number) => void = () => {}
+  onMenu: (x: number, y: number) => void = () => {}
   private home: Pose
   private flight?: { from: Pose; to: Pose; start: number; seconds: number }
+  private path?: FlightPath
+  private onPath = 0  // seconds since its start
   private held = new Set<string>()
   private pointers = new Map<number, { x: number; y: number }>()
   private travelled = 0
   private lastTap = { time: -1e9, x: 0, y: 0 }
+  private tapped = 0
   private fallSpeed = 0
 
   constructor(private canvas: HTMLElement, public pose: Pose) {
@@ -44,7 +55,10 @@ export class Movement extends EventTarget {
     canvas.addEventListener('keydown', (e) => this.keyDown(e))
     canvas.addEventListener('keyup', (e) => this.held.delete(e.code))
     canvas.addEventListener('blur', () => this.held.clear())
-    canvas.addEventListener('contextmenu', (e) => e.preventDefault())
+    canvas.addEventListener('contextmenu', (e) => {
+      e.preventDefault()
+      if ((e as PointerEvent).pointerType === 'touch' && this.travelled <= 5) this.onMenu(e.clientX, e.clientY)
+    })
     document.addEventListener('pointerlockchange', () => this.told())
   }
 
@@ -53,6 +67,7 @@ export class Movement extends EventTarget {
   }
   private set(pose: Pose): void {
     this.flight = undefined
+    this.automatic = false
     this.pose = pose
     this.told()
   }
@@ -67,8 +82,18 @@ export class Movement extends EventTarget {
     this.told()
   }
   flyTo(to: Pose, seconds = 0.9): void {
+    this.automatic = false
     if (matchMedia('(prefers-reduced-motion: reduce)').matches) seconds = 0
     this.flight = { from: copyOf(this.pose), to: copyOf(to), start: performance.now(), seconds }
+    this.told()
+  }
+  /** Flies through the places, or turns; whoever moves by hand ends that. */
+  setAutomatic(on: boolean): void {
+    const stops = on ? this.stops() : []
+    this.path = stops.length > 1 ? new FlightPath(stops, this.speed) : undefined
+    this.onPath = 0
+    if (this.path) this.flyTo(this.path.start, 2)
+    this.automatic = on
     this.told()
   }
   get flying(): boolean {
@@ -90,6 +115,11 @@ export class Movement extends EventTarget {
       to.elevation = Math.asin(Math.min(1, Math.max(-1, way.y / Math.max(distance, 1e-9))))
     }
     this.flyTo(to)
+  }
+
+  /** Turns to a place and, in orbit, from now on about it. */
+  lookAt(point: THREE.Vector3): void {
+    this.flyTo(poseLooking(this.pose.eye, point, this.pose.fov), 0.5)
   }
 
   // Pointers -----------------------------------------------------------------------------------
@@ -155,15 +185,19 @@ export class Movement extends EventTarget {
   }
 
   private up(event: PointerEvent): void {
-    if (!this.pointers.delete(event.pointerId) || this.travelled > 5 || event.button > 0) return
+    if (!this.pointers.delete(event.pointerId) || this.travelled > 5) return
+    if (event.button === 2) this.onMenu(event.clientX, event.clientY)
+    if (event.button > 0 || this.takesTap(event.clientX, event.clientY)) return
     const now = event.timeStamp
     const near = Math.hypot(event.clientX - this.lastTap.x, event.clientY - this.lastTap.y) < 20
-    if (now - this.lastTap.time < 400 && near) {
+    if (now - this.lastTap.time < DOUBLE && near) {
       this.lastTap.time = -1e9
+      clearTimeout(this.tapped)
       this.onDoubleTap(event.clientX, event.clientY)
     } else {
       this.lastTap = { time: now, x: event.clientX, y: event.clientY }
-      this.onTap(event.clientX, event.clientY)
+      clearTimeout(this.tapped)
+      this.tapped = window.setTimeout(() => this.onTap(event.clientX, event.clientY), DOUBLE)
     }
   }
 
@@ -190,6 +224,8 @@ export class Movement extends EventTarget {
       this.radview(event.key)
     } else if (event.key === 'r') {
       this.reset()
+    } else if (event.key === 'ContextMenu' || (event.key === 'F10' && event.shiftKey)) {
+      this.onMenu(this.canvas.clientWidth / 2, this.canvas.clientHeight / 2)
     } else {
       return
     }
@@ -219,12 +255,19 @@ export class Movement extends EventTarget {
       return true
     }
     const stick = this.gamepad(seconds)
-    if (this.automatic) this.circle(seconds)
-    const walked = this.mode === 'walk' && this.walk(seconds)
+    if (this.automatic && this.path) this.flyOn(seconds)
+    else if (this.automatic) this.circle(seconds)
+    const walked = this.mode === 'walk' && !this.automatic && this.walk(seconds)
     return stick || this.automatic || walked
   }
 
-  /** The original's automatic mode: once around in forty seconds, the gaze wandering a little. */
+  private flyOn(seconds: number): void {
+    this.onPath += seconds
+    this.pose = this.path!.at(this.onPath)
+    this.told()
+  }
+
+  /** Once around in forty seconds. */
   private circle(seconds: number): void {
     const step = 2 * Math.PI / 40 * seconds
     this.pose = this.mode === 'walk' ? turned(this.pose, step, 0) : orbited(this.pose, step, 0)

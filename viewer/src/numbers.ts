@@ -26,6 +26,15 @@ export function percent(value: number): string {
   return format({ style: 'percent', maximumFractionDigits: 0 }).format(value)
 }
 
+/** A share to the tenth of a percent. */
+export function fine(value: number): string {
+  return format({ style: 'percent', minimumFractionDigits: 1, maximumFractionDigits: 1 }).format(value)
+}
+
+export function count(value: number): string {
+  return format({ maximumFractionDigits: 0 }).format(value)
+}
+
 /** Metres, to the millimetre where that says something. */
 export function metres(value: number): string {
   return `${format({ minimumFractionDigits: 2, maximumFractionDigits: Math.abs(value) < 10 ? 3 : 2 }).format(value)} m`

@@ -7,8 +7,8 @@ import { FALSE_COLOUR_GLSL } from './false_colour'
 import type { Material, Pattern } from './solution'
 import { TONE_GLSL } from './tone'
 
-export type Look = 'picture' | 'illuminance' | 'exitance' | 'normals' | 'reflectance'
-export const LOOKS: Look[] = ['picture', 'illuminance', 'exitance', 'normals', 'reflectance']
+export type Look = 'picture' | 'illuminance' | 'exitance' | 'normals' | 'reflectance' | 'unshot'
+export const LOOKS: Look[] = ['picture', 'illuminance', 'exitance', 'normals', 'reflectance', 'unshot']
 
 /** Shared by all materials, so that setting a value shows everywhere. */
 export interface LookUniforms {
@@ -104,9 +104,10 @@ void main() {
     E = emissionTexel * min(texture(emissionMap, place1).rgb, most.y);` : ''}
   vec3 B = isIrradiance ? E * emissionFactor + rho * light : light;
   if (raw) { colour = vec4(B / 3.14159265359, 1.0); return; }
-  float value = dot(look == 1 ? light : B, LUMINANCE);
+  // Contours are of what is received, where that is what the columns are.
+  float value = dot(isIrradiance && look != 2 ? light : B, LUMINANCE);
   vec3 shown;
-  if (look == 1 || look == 2) {
+  if (look == 1 || look == 2 || look == 5) {
     shown = falseColour((value - range.x) / max(range.y - range.x, 1e-30));
   } else if (look == 3) {
     shown = 0.5 + 0.5 * normalize(facing);

@@ -36,7 +36,8 @@ export interface Solution {
   scenes: { name: string; factors: Record<string, number> }[]
   cameras: CameraPlace[]
   grids: SensorGrid[]
-  error?: { rms: number; confidence: number }
+  error?: { rms: number; confidence: number; points: number }
+  energy: { emitted: number; absorbed: number; absorbed_behind: number; escaped: number; unshot: number }
   materials: Material[]
   primitives: Primitive[]
   textures: TextureImage[]
@@ -46,6 +47,7 @@ export interface Solution {
   uv1?: Float32Array
   indices: Uint32Array
   exitance: Float32Array[]     // per group: vertices x RGB
+  unshot?: Float32Array        // while it is being solved: exitance still to be sent on, luminance
   irradiance: Float32Array[]   // per group, where it was stored, else zero; see irradianceOf()
 }
 
@@ -147,12 +149,13 @@ export function readSolution(file: ArrayBuffer): Solution {
   const out: Solution = {
     title: extras.title, quantity: extras.quantity, unit: extras.exitance_unit, up: extras.up,
     groups: extras.groups, scenes: extras.scenes ?? [], cameras: extras.cameras ?? [],
-    grids: extras.grids ?? [], error: extras.error,
+    grids: extras.grids ?? [], error: extras.error, energy: extras.energy,
     materials: json.materials.map(readMaterial), primitives: [],
     textures: (json.textures ?? []).map((t: Json) => readTexture(json, binary, t)),
     positions: new Float32Array(3 * vertices), normals: new Float32Array(3 * vertices),
     uv0: patterned ? new Float32Array(2 * vertices) : undefined,
     uv1: patterned ? new Float32Array(2 * vertices) : undefined,
+    unshot: given.length > 0 && given.every((p) => '_UNSHOT' in p.attributes) ? new Float32Array(vertices) : undefined,
     indices: new Uint32Array(3 * triangles), exitance: columns(), irradiance: columns(),
   }
 
@@ -166,6 +169,7 @@ export function readSolution(file: ArrayBuffer): Solution {
     out.normals.set(accessors.floats(attributes.NORMAL), 3 * vertex)
     if ('TEXCOORD_0' in attributes) out.uv0!.set(accessors.floats(attributes.TEXCOORD_0), 2 * vertex)
     if ('TEXCOORD_1' in attributes) out.uv1!.set(accessors.floats(attributes.TEXCOORD_1), 2 * vertex)
+    out.unshot?.set(accessors.floats(attributes._UNSHOT), vertex)
     const stored = (name: string, g: number) =>
       Array.from({ length: perGroup }, (_, k) => accessors.floats(attributes[`${name}_${g * perGroup + k}`]))
     const measured = '_IRRADIANCE_0' in attributes

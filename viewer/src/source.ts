@@ -3,10 +3,10 @@
 
 import { applyDelta } from './byte_delta'
 import { byId, element } from './elements'
-import { figures, percent } from './numbers'
+import { count, fine, percent } from './numbers'
 import { readSolution, type Solution } from './solution'
 
-interface Progress { phase: string; seconds: number; done: number; paused: boolean; fraction_left: number; vertices: number; shots: number }
+interface Progress { phase: string; seconds: number; done: number; paused: boolean; fraction_left: number; vertices: number; shots: number; error?: number }
 
 /** The solution that the page carries inside, if it does. */
 export function embeddedSolution(): Solution | null {
@@ -88,7 +88,8 @@ export class Server extends EventTarget {
     byId<HTMLProgressElement>('solving-bar').value = progress.done
     byId('solving-pause').textContent = progress.paused ? 'Resume' : 'Pause'
     byId('solving-text').replaceChildren(element('span', {}, progress.paused ? 'paused' : percent(progress.done)),
-      element('span', { class: 'faint' }, ` unshot ${percent(progress.fraction_left)} · ${figures(progress.vertices)} vertices`))
+      element('span', { class: 'faint' }, ` unshot ${percent(progress.fraction_left)} · ${count(progress.vertices)} vertices`
+        + (progress.error === undefined ? '' : ` · error ${fine(progress.error)}`)))
   }
 
   private async command(command: string): Promise<void> {

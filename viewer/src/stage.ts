@@ -12,6 +12,8 @@ export class Stage {
   readonly renderer: THREE.WebGLRenderer
   readonly camera = new THREE.PerspectiveCamera(45, 1, 0.01, 100)
   readonly scene = new THREE.Scene()
+  /** What carries the camera: at rest, but where a headset moves the eyes. */
+  readonly rig = new THREE.Group()
   /** Grids, tape and the like; not measured, not exposed for. */
   readonly overlay = new THREE.Group()
   mesh!: LitMesh
@@ -22,7 +24,8 @@ export class Stage {
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' })
     this.renderer.xr.enabled = true
-    this.scene.add(this.overlay)
+    this.rig.add(this.camera)
+    this.scene.add(this.overlay, this.rig)
   }
 
   async show(solution: Solution): Promise<void> {
@@ -41,15 +44,17 @@ export class Stage {
     this.scene.add(mesh)
   }
 
-  setLook(look: Look): void {
+  /** Contours are of illuminance, but of what is shown in false colours. */
+  setLook(look: Look, contours: boolean): void {
     this.uniforms.look.value = LOOKS.indexOf(look)
-    this.mesh.showIrradiance(look === 'illuminance')
+    this.mesh.showColumns(look === 'unshot' ? 'unshot' : look === 'illuminance' || (contours && look !== 'exitance') ? 'irradiance' : 'exitance')
   }
   setToneCurve(curve: ToneCurve): void {
     this.uniforms.toneCurve.value = TONE_CURVES.indexOf(curve)
   }
 
   resize(): boolean {
+    if (this.renderer.xr.isPresenting) return false
     const { clientWidth: width, clientHeight: height } = this.canvas
     const ratio = Math.min(devicePixelRatio, 2)
     const size = this.renderer.getSize(new THREE.Vector2())
@@ -84,11 +89,13 @@ export class Stage {
     this.renderer.setClearColor(0, 0)
     this.uniforms.raw.value = true
     this.overlay.visible = false
+    this.mesh.linesVisible = false
     this.renderer.setRenderTarget(target)
     this.renderer.render(this.scene, this.camera)
     this.renderer.readRenderTargetPixels(target, 0, 0, target.width, target.height, pixels)
     this.renderer.setRenderTarget(null)
     this.overlay.visible = true
+    this.mesh.linesVisible = true
     this.uniforms.raw.value = false
     this.renderer.setClearColor(colour, alpha)
     this.renderer.xr.enabled = xr

@@ -17,7 +17,6 @@ export class Tape {
     this.line.frustumCulled = false
     this.line.renderOrder = 1
     viewer.stage.overlay.add(this.line)
-    viewer.movement.onTap = (x, y) => this.tap(x, y)
   }
 
   setOn(on: boolean): void {
@@ -26,9 +25,11 @@ export class Tape {
     this.draw([])
   }
 
-  private tap(x: number, y: number): void {
-    const place = this.on && this.viewer.pickAt(x, y)
-    if (!place) return
+  /** Whether the tape takes a tap. */
+  tap(x: number, y: number): boolean {
+    if (!this.on) return false
+    const place = this.viewer.pickAt(x, y)
+    if (!place) return true
     const here = this.viewer.toPage(place.point)
     if (this.from) {
       this.length = this.from.distanceTo(here)
@@ -38,6 +39,7 @@ export class Tape {
       this.from = here
       this.draw([here])
     }
+    return true
   }
 
   private draw(points: THREE.Vector3[]): void {

@@ -25,10 +25,14 @@ export class Viewer extends EventTarget {
   ev = 0
   toneCurve: ToneCurve = 'reinhard'
   range = { automatic: true, low: 0, high: 1 }
+  most = 1                     // that fits: what 99 % of the surfaces stay below
   contour = 0                  // step, 0 = none
   wires = false
   section = { axis: -1, at: 0.5, flipped: false }  // axis 0, 1, 2 of the page; at: 0 ... 1 of the box
   pointer?: { x: number; y: number }
+  readonly bookmarks: { eye: number[]; look_at: number[]; fov: number }[] = []
+  /** Called before each frame that a headset shows. */
+  inHeadset: (seconds: number, frame: XRFrame) => void = () => {}
 
   private dirty = true
   private exposure = 1
@@ -45,6 +49,7 @@ export class Viewer extends EventTarget {
       const place = this.pickAt(x, y)
       if (place) this.movement.goTo(this.toPage(place.point), place.normal.clone().applyQuaternion(this.turn))
     }
+    this.movement.stops = () => this.places
     this.movement.addEventListener('change', () => this.changed())
     canvas.addEventListener('pointermove', (e) => this.hover({ x: e.clientX, y: e.clientY }))
     canvas.addEventListener('pointerleave', () => this.hover(undefined))
@@ -69,7 +74,7 @@ export class Viewer extends EventTarget {
     this.stage.mesh.showWires(this.wires)
     this.lightChanged()
     this.dispatchEvent(new Event('solution'))
-    if (first) this.stage.renderer.setAnimationLoop((now) => this.frame(now))
+    if (first) this.stage.renderer.setAnimationLoop((now, frame) => this.frame(now, frame))
   }
 
   private enter(): void {
@@ -89,6 +94,16 @@ export class Viewer extends EventTarget {
   }
   get pose(): Pose {
     return this.movement.pose
+  }
+  /** Keeps where one is for later. */
+  keepPlace(): void {
+    this.bookmarks.push(this.place())
+    this.dispatchEvent(new Event('bookmarks'))
+  }
+  /** The scene's cameras and what was kept. */
+  get places(): Pose[] {
+    return [...this.solution.cameras.map((camera) => poseOfCamera(camera, this.turn)),
+      ...this.bookmarks.map(({ eye, look_at, fov }) => this.poseAt(eye, look_at, fov))]
   }
   toPage(p: THREE.Vector3): THREE.Vector3 {
     return p.clone().applyQuaternion(this.turn)
@@ -114,8 +129,8 @@ export class Viewer extends EventTarget {
     this.told()
   }
   setLook(look: Look): void {
-    this.look = look
-    this.stage.setLook(look)
+    this.look = look === 'unshot' && !this.solution.unshot ? 'picture' : look
+    this.stage.setLook(this.look, this.contour > 0)
     if (this.range.automatic) this.fitRange()
     this.told()
   }
@@ -135,14 +150,26 @@ export class Viewer extends EventTarget {
     this.stage.uniforms.range.value.set(low, high)
     this.told()
   }
+  get inFalseColour(): boolean {
+    return ['illuminance', 'exitance', 'unshot'].includes(this.look)
+  }
+  /** What false colours show. */
+  get quantity(): { name: string; unit: string } {
+    const { quantity, unit } = this.solution, photometric = quantity === 'photometric'
+    if (this.look === 'exitance') return { name: 'Exitance', unit }
+    if (this.look === 'unshot') return { name: 'Unshot exitance', unit }
+    return { name: photometric ? 'Illuminance' : 'Irradiance', unit: photometric ? 'lx' : unit }
+  }
   fitRange(): void {
-    this.range = { automatic: true, low: 0, high: this.mostOfSurfaces() }
+    this.most = this.mostOfSurfaces()
+    this.range = { automatic: true, low: 0, high: this.most }
     this.stage.uniforms.range.value.set(0, this.range.high)
     this.told()
   }
   setContour(step: number): void {
     this.contour = step
     this.stage.uniforms.contour.value = step
+    this.stage.setLook(this.look, step > 0)
     this.told()
   }
   setWires(shown: boolean): void {
@@ -163,23 +190,24 @@ export class Viewer extends EventTarget {
     this.told()
   }
 
-  /** What 99 % of the vertices that do not shine themselves stay below. */
+  /** What 99 % of the area that does not shine itself stays below, rounded up. */
   private mostOfSurfaces(): number {
-    const { solution } = this, factors = this.mix.factors(performance.now()), values: number[] = []
+    const { solution } = this, { positions, indices, unshot } = solution, factors = this.mix.factors(performance.now())
     const columns = this.look === 'exitance' ? solution.exitance : solution.irradiance
-    const step = Math.max(1, Math.floor(solution.positions.length / 3 / 20000))
+    const level = this.look === 'unshot' && unshot ? (v: number) => unshot[v]
+      : (v: number) => columns.reduce((sum, of, g) =>
+        sum + luminance(factors[3 * g] * of[3 * v], factors[3 * g + 1] * of[3 * v + 1], factors[3 * g + 2] * of[3 * v + 2]), 0)
+    const seen: { value: number; area: number }[] = [], step = Math.max(1, Math.floor(indices.length / 3 / 20000))
+    const corner = (i: number) => new THREE.Vector3().fromArray(positions, 3 * indices[i])
     for (const p of solution.primitives) {
       if (solution.materials[p.material].exitance.some((e) => e > 0)) continue
-      for (let v = p.firstVertex; v < p.firstVertex + p.vertices; v += step) {
-        let sum = 0
-        columns.forEach((of, g) => {
-          sum += luminance(factors[3 * g] * of[3 * v], factors[3 * g + 1] * of[3 * v + 1], factors[3 * g + 2] * of[3 * v + 2])
-        })
-        values.push(sum)
-      }
+      for (let t = p.firstTriangle; t < p.firstTriangle + p.triangles; t += step)
+        seen.push({ value: level(indices[3 * t]), area: new THREE.Triangle(corner(3 * t), corner(3 * t + 1), corner(3 * t + 2)).getArea() })
     }
-    values.sort((a, b) => a - b)
-    const high = values[Math.floor(0.99 * (values.length - 1))] || 1
+    seen.sort((a, b) => a.value - b.value)
+    const all = seen.reduce((sum, s) => sum + s.area, 0)
+    let below = 0
+    const high = seen.find((s) => (below += s.area) >= 0.99 * all)?.value || 1
     const round = 10 ** Math.floor(Math.log10(high)) / 2
     return Math.ceil(high / round) * round
   }
@@ -190,6 +218,15 @@ export class Viewer extends EventTarget {
     return pick(this.stage.mesh, this.solution, ray, sectioned ? this.stage.uniforms.section.value : undefined)
   }
   /** `x`, `y`: CSS pixels of the canvas. */
+  /** In orbit: turns to what lies under a place of the canvas and from now on about it. */
+  lookAt(x: number, y: number): void {
+    const place = this.movement.mode === 'orbit' ? this.pickAt(x, y) : null
+    if (place) this.movement.lookAt(this.toPage(place.point))
+  }
+  /** In the page's frame, nothing beyond the section. */
+  placeAlong(ray: THREE.Ray): Place | null {
+    return this.solution ? this.pickRay(ray) : null
+  }
   pickAt(x: number, y: number): Place | null {
     return this.solution ? this.pickRay(this.stage.ray(this.pose, x, y)) : null
   }
@@ -210,17 +247,18 @@ export class Viewer extends EventTarget {
 
   // Frames -----------------------------------------------------------------------------------------
 
-  private frame(now: number): void {
-    const seconds = Math.min(0.1, (now - this.lastFrame) / 1000)
+  private frame(now: number, frame?: XRFrame): void {
+    const seconds = Math.min(0.1, Math.max(0, now - this.lastFrame) / 1000)
     this.lastFrame = now
-    if (this.movement.advanceTime(seconds)) this.dirty = true
+    if (frame) this.inHeadset(seconds, frame)
+    else if (this.movement.advanceTime(seconds)) this.dirty = true
     if (this.mix.fading) {
       this.stage.mesh.setFactors(this.mix.factors(now))
       this.changed()
       if (!this.mix.fading) this.lightChanged()
     }
     if (this.stage.resize()) this.changed()
-    if (this.meterAt && now >= this.meterAt) this.meter()
+    if (this.meterAt && now >= this.meterAt && !frame) this.meter()
     const gap = Math.log(this.exposureWanted / this.exposure)
     if (Math.abs(gap) > 0.002) {
       this.exposure *= Math.exp(gap * Math.min(1, 8 * seconds))
@@ -228,7 +266,7 @@ export class Viewer extends EventTarget {
     } else {
       this.exposure = this.exposureWanted
     }
-    if (!this.dirty && !this.stage.renderer.xr.isPresenting) return
+    if (!this.dirty && !frame) return
     this.dirty = false
     this.draw()
   }
