@@ -11,10 +11,13 @@ DEMO := out/$(basename $(notdir $(SCENE)))
 help: ## list the targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
 
-demo: build ## light a room: a solution file and a picture in out/
+demo: build ## light a room: a solution file, pictures and a page in out/
+	@scripts/setup demo
 	@mkdir -p out
 	build/bin/exitance solve $(SCENE) -o $(DEMO).glb --error $(ERROR)
 	build/bin/exitance render $(DEMO).glb -o $(DEMO).png
+	build/bin/exitance view $(DEMO).glb --html $(DEMO).html
+	node scripts/walkthrough_picture.mjs $(DEMO).glb $(DEMO)-walkthrough.png
 	@scripts/demo-notes $(DEMO)
 
 build: ## the program: build/bin/exitance
