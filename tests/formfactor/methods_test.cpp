@@ -5,6 +5,7 @@
 
 #include "enclosures.h"
 #include "exitance/formfactor/closure.h"
+#include "exitance/formfactor/polygon_polygon.h"
 #include "exitance/run/error.h"
 #include "view_factor_cases.h"
 
@@ -20,14 +21,14 @@ using enclosures::dense;
 const Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
 
 // Sampling errors are normal: four standard errors happen once in 16000 factors. Where a method's
-// error is not: discs have no corners, a hemicube sees from the middles of at most 64 cells, and
-// the kernel of pairs of points at an edge has no variance at all.
+// error is not: discs have no corners, a hemicube sees from the middles of at most 64 cells.
 struct Case {
     std::string name;
     Enclosure enclosure;
     std::uint32_t from, to;
     double F;
-    bool touching;  // facets meet at an edge
+    bool touching;                    // facets meet at an edge
+    bool too_near_for_discs = false;  // sixteen discs along the larger facet are wider than the gap
 };
 
 std::vector<Case> cases() {
@@ -69,6 +70,18 @@ std::vector<Case> cases() {
         out.push_back({"a box round a body", std::move(e), 6, 2, 1.0 / 6, false});
     }
     {
+        // A low wall on a large floor, of which a sheet leaves it a strip to see: a few rays that
+        // are spread evenly over the floor would all be blocked.
+        Enclosure e;
+        add_rectangle(e, {4, 4, 0}, y * 0.1, z * 0.1, 0);
+        add_rectangle(e, {}, x * 8, y * 8, 1);
+        add_rectangle(e, {4.5, -1, -1}, y * 10, z * 3, Facet::only_blocks);
+        const std::array wall{Vec3{4, 4, 0}, Vec3{4, 4.1, 0}, Vec3{4, 4.1, 0.1}, Vec3{4, 4, 0.1}};
+        const std::array strip{Vec3{4, 0, 0}, Vec3{4.5, 0, 0}, Vec3{4.5, 8, 0}, Vec3{4, 8, 0}};
+        out.push_back({"a low wall at a hidden floor", std::move(e), 0, 1,
+                       exchange_area(wall, strip) / 0.01, true, true});
+    }
+    {
         Enclosure e;
         add_rectangle(e, {}, x, y, 0);
         add_rectangle(e, z, y, x, 1);
@@ -82,7 +95,6 @@ double allowed(const std::string& method, const Case& c, double accuracy) {
     if (method == "auto") return accuracy;
     if (method == "disk") return c.touching ? 0.02 : 4 * accuracy;
     if (method == "hemicube") return 4 * accuracy;
-    if (method == "monte-carlo") return c.touching ? 0.03 : 4 * accuracy;
     return 4 * accuracy;
 }
 
@@ -91,6 +103,7 @@ TEST(FormFactorMethods, MeetClosedForms) {
     options.accuracy = 1e-3;
     for (const FormFactorMethod& method : form_factor_methods())
         for (const Case& c : cases()) {
+            if (c.too_near_for_discs && method.name == std::string("disk")) continue;
             const auto F = dense(compute(c.enclosure, method.name, options));
             EXPECT_NEAR(F[c.from][c.to], c.F, allowed(method.name, c, options.accuracy))
                 << method.name << ", " << c.name;

@@ -194,7 +194,6 @@ Demand demand(const std::string& method, const Case& c) {
     const double accuracy = c.many_facets ? 1e-2 : 1e-3;
     double tolerance = 4 * accuracy;
     if (method == "disk") tolerance = c.touching ? 0.03 : 0.012;
-    if (method == "monte-carlo" && c.touching) tolerance = 0.1;
     if (method == "hemicube" && c.touching) tolerance = 8e-3;
     // Closer than the cells of a polygon are wide.
     if (c.close && (method == "disk" || method == "hemicube")) tolerance = 0.05;
@@ -233,7 +232,7 @@ TEST(ReferenceFactors, AreMetByEveryMethod) {
         c.obstructed = reference.at("obstructed");
         for (const FormFactorMethod& method : form_factor_methods()) {
             const std::string called = method.name;
-            if (c.long_and_thin && (called == "disk" || called == "monte-carlo"))
+            if (c.long_and_thin && called == "disk")
                 continue;  // theirs are polygons about as long as wide: --by patch makes them
             const Demand wanted = demand(method.name, c);
             MethodOptions options;

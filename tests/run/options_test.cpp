@@ -120,6 +120,27 @@ TEST(Option, RefusesWhatIsNotWhollyANumber) {
     EXPECT_EQ(v.seed, 0u);
 }
 
+TEST(Option, NumbersMayHaveTheirUnit) {
+    Values v;
+    const Options options = v.describe();
+    const auto limit = [&](const char* text) {
+        find_option(options, "limit").set(text);
+        return *v.limit;
+    };
+    EXPECT_EQ(limit("30s"), 30);
+    EXPECT_EQ(limit("1.5min"), 90);
+    EXPECT_EQ(limit("2h"), 7200);
+    find_option(options, "size").set("0.25m");
+    EXPECT_EQ(v.size, 0.25);
+    double share = 0;
+    Option{"share", &share, "how much", "", 0, 1}.set("2.5%");
+    EXPECT_EQ(share, 0.025);
+    for (const char* text : {"30 s", "30m", "30%", "-1s", "s"})
+        EXPECT_NE(complaint([&] { limit(text); }), "") << text;
+    for (const char* text : {"1mm", "20%", "3m"})
+        EXPECT_NE(complaint([&] { find_option(options, "size").set(text); }), "") << text;
+}
+
 TEST(Option, CheckTakesTheEndsOfTheRange) {
     Values v;
     const Options options = v.describe();

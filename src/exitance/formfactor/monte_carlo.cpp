@@ -32,7 +32,7 @@ FormFactorMatrix monte_carlo_form_factors(const MethodCall& call) {
             for (std::size_t k = 0; k < batches; ++k) {
                 const std::uint64_t key = hash_bits(options.seed, f, g, k);
                 sums[k] += sample_pair(caster, a, b, key, places, next).seen;
-                areas[k] = a.area * b.area * sums[k] / next;
+                areas[k] = sums[k] / next;
             }
             call.counters.rays += batches * (next - places);
             places = next;

@@ -29,11 +29,24 @@ bool inside(const Option& option, double value) {
     return std::isfinite(value) && value >= option.least && value <= option.most;
 }
 
+// What a number with `suffix` behind it is multiplied by: the option's unit may be written out,
+// times may be in minutes and hours, pure numbers in percent. 0 for anything else.
+double suffix_factor(const Option& option, std::string_view suffix) {
+    if (suffix.empty() || suffix == option.unit) return 1;
+    if (option.unit == "s" && suffix == "min") return 60;
+    if (option.unit == "s" && suffix == "h") return 3600;
+    if (option.unit.empty() && suffix == "%") return 0.01;
+    return 0;
+}
+
 double parse_number(const Option& option, const std::string& text) {
     double value = 0;
     const char* end = text.data() + text.size();
     const auto [rest, failure] = std::from_chars(text.data(), end, value);
-    if (failure != std::errc{} || rest != end || !inside(option, value)) refuse(option, text);
+    if (failure != std::errc{}) refuse(option, text);
+    const double factor = suffix_factor(option, {rest, end});
+    value *= factor;
+    if (factor == 0 || !inside(option, value)) refuse(option, text);
     return value;
 }
 

@@ -180,8 +180,13 @@ class ElementSolve {
             enclosure.facets.push_back(facet);
             enclosure.surfaces.push_back({"", facet.area, 1.0});
         }
+        Cancel enough;
+        const Observer watch = [&](const Progress& progress) {
+            if (interrupted()) enough.request();
+            tell(progress);
+        };
         try {
-            return pairwise_exchange_areas(enclosure, {pair_accuracy()}, {}, stop_.cancel);
+            return pairwise_exchange_areas(enclosure, {pair_accuracy()}, watch, &enough);
         } catch (const Error&) {
             if (!interrupted()) throw;
             return ExchangeAreas(rows_.size());
