@@ -42,7 +42,7 @@ tsan: ## the parallel parts under the thread sanitizer
 	@ctest --test-dir build-tsan --output-on-failure -j $$(nproc)
 
 bench: ## speed and memory against what the machine can do
-	@scripts/setup build bench
+	@scripts/setup build demo bench
 	@cmake --preset bench --log-level=NOTICE
 	@cmake --build --preset bench
 	@benchmarks/run

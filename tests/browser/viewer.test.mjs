@@ -2,6 +2,7 @@
 // node --test: the walkthrough does what its controls say, checked against the program's answers.
 import assert from 'node:assert/strict'
 import { readFileSync, writeFileSync } from 'node:fs'
+import { createServer } from 'node:http'
 import { join } from 'node:path'
 import { after, before, describe, it } from 'node:test'
 import { pathToFileURL } from 'node:url'
@@ -694,6 +695,12 @@ describe('taking away', () => {
     assert.match(run('info', 'mix.glb'), /triangles|polygons/)
   }))
 
+  it('the solution itself', () => visit('room.glb', async (page) => {
+    await page.click('#panel-save summary')
+    const [file] = await Promise.all([page.waitForEvent('download'), page.click('#solution-file')])
+    assert.ok(readFileSync(await file.path()).equals(readFileSync(glb('room.glb'))))
+  }))
+
   it('one file that works from disk, without network', async () => {
     run('view', 'cornell.glb', '--html', 'cornell.html')
     const { page, faults } = await open(browser, pathToFileURL(glb('cornell.html')).href, { offline: true })
@@ -701,6 +708,59 @@ describe('taking away', () => {
     near(found.illuminance, probed('cornell.glb', found), 0.01 * found.illuminance)
     assert.deepEqual(faults, [])
     await page.context().close()
+  })
+})
+
+describe('strangers', () => {
+  it('a page of another site gets nothing', async () => {
+    const server = await serve('cornell.glb')
+    const site = createServer((_, answer) => answer.setHeader('Content-Type', 'text/html').end('<p>elsewhere</p>'))
+    await new Promise((resolve) => site.listen(0, '127.0.0.1', resolve))
+    const context = await browser.newContext(), page = await context.newPage()
+    await page.goto(`http://127.0.0.1:${site.address().port}/`)
+    const got = await page.evaluate(async (url) => {
+      const tried = (promise) => promise.then((v) => v, () => 'refused')
+      const loaded = (tag, attributes) => new Promise((resolve) => {
+        const node = Object.assign(document.createElement(tag), attributes)
+        node.onload = () => resolve(tag === 'iframe' ? (node.contentDocument ? 'readable' : 'refused') : 'loaded')
+        node.onerror = () => resolve('refused')
+        document.body.append(node)
+      })
+      return { read: await tried(fetch(`${url}solution.glb`).then((a) => a.status)),
+        command: await tried(fetch(`${url}command`, { method: 'POST', mode: 'no-cors', body: '{"command": "stop"}' }).then((a) => a.type)),
+        script: await loaded('script', { src: `${url}viewer.js` }), frame: await loaded('iframe', { src: url }) }
+    }, server.url)
+    assert.deepEqual(got, { read: 'refused', command: 'refused', script: 'refused', frame: 'refused' })
+    assert.match(page.frames()[1].url(), /^chrome-error:/, 'nobody frames the page')
+    await context.close()
+    site.close()
+    await server.stop()
+  })
+
+  it('the page itself can ask nobody else', async () => {
+    const heard = []
+    const site = createServer((request, answer) => {
+      heard.push(request.url)
+      answer.setHeader('Access-Control-Allow-Origin', '*').end('x')
+    })
+    await new Promise((resolve) => site.listen(0, '127.0.0.1', resolve))
+    const server = await serve('cornell.glb'), { page } = await open(browser, server.url)
+    const violated = await page.evaluate(async (elsewhere) => {
+      const out = []
+      addEventListener('securitypolicyviolation', (event) => out.push(event.effectiveDirective))
+      await fetch(`${elsewhere}/asked`).catch(() => {})
+      new Image().src = `${elsewhere}/picture`
+      document.body.append(Object.assign(document.createElement('script'), { src: `${elsewhere}/script` }),
+        Object.assign(document.createElement('script'), { textContent: 'window.ran = true' }))
+      document.body.append(Object.assign(document.createElement('iframe'), { src: elsewhere }))
+      await new Promise((resolve) => setTimeout(resolve, 300))
+      return { out: [...new Set(out)].sort(), ran: window.ran }
+    }, `http://127.0.0.1:${site.address().port}`)
+    assert.deepEqual(violated, { out: ['connect-src', 'frame-src', 'img-src', 'script-src-elem'], ran: undefined })
+    assert.deepEqual(heard, [])
+    await page.context().close()
+    site.close()
+    await server.stop()
   })
 })
 

@@ -18,9 +18,15 @@ export function run(...words) {
 }
 
 /** Software rendering, so that it is the same everywhere; --no-sandbox because CI runs as root. */
-export function launch() {
-  return chromium.launch({ executablePath: '/usr/bin/chromium',
-    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] })
+const chromiumAsHere = { executablePath: '/usr/bin/chromium',
+  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'] }
+
+export const launch = () => chromium.launch(chromiumAsHere)
+
+/** A browser and the number of its first process. */
+export async function launchProcess() {
+  const server = await chromium.launchServer(chromiumAsHere)
+  return { browser: await chromium.connect(server.wsEndpoint()), pid: server.process().pid, close: () => server.close() }
 }
 
 /** Serves `file`; ends with `stop()`. */

@@ -53,6 +53,9 @@ export function savePanel(viewer: Viewer): HTMLElement {
     }
     setTimeout(() => (link.textContent = 'Link to here'), 1500)
   }, { id: 'link' })
+  // What is shown as the program has it; a page of its own holds it in another form.
+  const whole = document.getElementById('grids') ? null
+    : button('Solution', async () => download(await (await fetch('solution.glb')).blob(), `${name}.glb`), { id: 'solution-file', title: 'The .glb with the light of every group' })
   return section('Save and share', 'panel-save', false,
-    row(w, element('span', { class: 'faint' }, '×'), h, picture), element('div', { class: 'buttons' }, mix, link))
+    row(w, element('span', { class: 'faint' }, '×'), h, picture), element('div', { class: 'buttons' }, mix, whole, link))
 }

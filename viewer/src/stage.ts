@@ -18,6 +18,7 @@ export class Stage {
   readonly overlay = new THREE.Group()
   mesh!: LitMesh
   uniforms!: LookUniforms
+  private columns: 'exitance' | 'irradiance' | 'unshot' = 'exitance'
   private meter = new THREE.WebGLRenderTarget(96, 54, { type: THREE.FloatType, depthBuffer: true })
   private eye = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType, depthBuffer: true })
 
@@ -47,7 +48,8 @@ export class Stage {
   /** Contours are of illuminance, but of what is shown in false colours. */
   setLook(look: Look, contours: boolean): void {
     this.uniforms.look.value = LOOKS.indexOf(look)
-    this.mesh.showColumns(look === 'unshot' ? 'unshot' : look === 'illuminance' || (contours && look !== 'exitance') ? 'irradiance' : 'exitance')
+    this.columns = look === 'unshot' ? 'unshot' : look === 'illuminance' || (contours && look !== 'exitance') ? 'irradiance' : 'exitance'
+    this.mesh.showColumns(this.columns)
   }
   setToneCurve(curve: ToneCurve): void {
     this.uniforms.toneCurve.value = TONE_CURVES.indexOf(curve)
@@ -90,12 +92,14 @@ export class Stage {
     this.uniforms.raw.value = true
     this.overlay.visible = false
     this.mesh.linesVisible = false
+    this.mesh.showColumns('exitance')
     this.renderer.setRenderTarget(target)
     this.renderer.render(this.scene, this.camera)
     this.renderer.readRenderTargetPixels(target, 0, 0, target.width, target.height, pixels)
     this.renderer.setRenderTarget(null)
     this.overlay.visible = true
     this.mesh.linesVisible = true
+    this.mesh.showColumns(this.columns)
     this.uniforms.raw.value = false
     this.renderer.setClearColor(colour, alpha)
     this.renderer.xr.enabled = xr
