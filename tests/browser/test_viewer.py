@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """The walkthrough in a real browser: Debian's Chromium, headless, with software rendering. The
-checks themselves are in viewer.test.mjs."""
+checks themselves are in *.test.mjs."""
 import os
 import shutil
 import subprocess
@@ -17,8 +17,8 @@ class Browser(unittest.TestCase):
         self.assertTrue((ROOT / "build/node/node_modules/playwright-core").is_dir(),
                         "scripts/setup test installs it")
         done = subprocess.run(
-            ["node", "--test", ROOT / "tests/browser/viewer.test.mjs"], timeout=590, text=True,
-            capture_output=True,
+            ["node", "--test", *sorted((ROOT / "tests/browser").glob("*.test.mjs"))], timeout=590,
+            text=True, capture_output=True,
             env={**os.environ, "EXITANCE_PROGRAM": PROGRAM, "EXITANCE_SOURCE_DIR": str(ROOT)})
         self.assertEqual(done.returncode, 0, done.stdout[-6000:] + done.stderr[-2000:])
 

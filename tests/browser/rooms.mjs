@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// Solved rooms to walk through, a browser, and what the program itself says about them.
+import assert from 'node:assert/strict'
+import { writeFileSync } from 'node:fs'
+import { join } from 'node:path'
+import { after, before } from 'node:test'
+import { folder, launch, open, removeFolder, root, run, serve } from './viewing.mjs'
+
+export const near = (a, b, tolerance, what) =>
+  assert.ok(Math.abs(a - b) <= tolerance, `${what ?? 'value'}: ${a}, expected ${b} within ${tolerance}`)
+export const glb = (name) => join(folder, name)
+
+/** The browser of the tests that ask for rooms. */
+export let browser
+
+const solvers = {
+  'cornell.glb': () => run('solve', join(root, 'scenes/cornell.toml'), '-o', 'cornell.glb', '--error', '0.1', '--quiet'),
+  'office.glb': () => run('solve', join(root, 'scenes/office.toml'), '-o', 'office.glb', '--error', '0.3', '--quiet'),
+  'room.glb': () => {
+    writeTwoLamps()
+    run('solve', 'room.toml', '-o', 'room.glb', '--error', '0.1', '--quiet')
+  },
+}
+
+/** Solves them before the tests of a file. */
+export function prepare(...names) {
+  before(async () => {
+    for (const name of names) solvers[name]()
+    browser = await launch()
+  })
+  after(async () => {
+    await browser?.close()
+    removeFolder()
+  })
+}
+
+/** A room with two lamps in groups of their own and a scene that dims them, photometric. */
+function writeTwoLamps() {
+  writeFileSync(glb('room.toml'), `title = "Two lamps"
+quantity = "photometric"
+[[scenes]]
+name = "evening"
+left = 0.25
+right = 0
+[[material]]
+name = "wall"
+reflectance = 0.6
+[[material]]
+name = "left lamp"
+exitance = 3000
+group = "left"
+[[material]]
+name = "right lamp"
+exitance = [2000, 1000, 500]
+group = "right"
+[[grid]]
+name = "work"
+origin = [0.5, 0.8, -0.5]
+u = [3, 0, 0]
+v = [0, 0, -2]
+columns = 3
+rows = 2
+normal = [0, 1, 0]
+[[grid]]
+name = "floor"
+origin = [0.5, 0, -0.5]
+u = [3, 0, 0]
+v = [0, 0, -2]
+columns = 3
+rows = 2
+normal = [0, 1, 0]
+[[camera]]
+name = "door"
+eye = [0.3, 1.6, -0.3]
+look_at = [3, 1, -2]
+[[camera]]
+name = "window"
+eye = [3.5, 1.6, -2.5]
+look_at = [0, 0.5, 0]
+` + [['floor', 'wall', [[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]]], ['ceiling', 'wall', [[0, 0, 2.5], [0, 3, 2.5], [4, 3, 2.5], [4, 0, 2.5]]],
+    ['south', 'wall', [[0, 0, 0], [0, 0, 2.5], [4, 0, 2.5], [4, 0, 0]]], ['north', 'wall', [[0, 3, 0], [4, 3, 0], [4, 3, 2.5], [0, 3, 2.5]]],
+    ['west', 'wall', [[0, 0, 0], [0, 3, 0], [0, 3, 2.5], [0, 0, 2.5]]], ['east', 'wall', [[4, 0, 0], [4, 0, 2.5], [4, 3, 2.5], [4, 3, 0]]],
+    ['lamp 1', 'left lamp', [[0.8, 1.2, 2.4], [0.8, 1.8, 2.4], [1.4, 1.8, 2.4], [1.4, 1.2, 2.4]]],
+    ['lamp 2', 'right lamp', [[2.6, 1.2, 2.4], [2.6, 1.8, 2.4], [3.2, 1.8, 2.4], [3.2, 1.2, 2.4]]]]
+    .map(([name, material, corners]) => `[[polygon]]\nname = "${name}"\nmaterial = "${material}"\ncorners = ${JSON.stringify(corners.map(([x, y, z]) => [x, z, -y]))}\n`).join(''))
+}
+
+/** Serves `file`, opens it, looks at the page, and at the end nothing may have gone wrong. */
+export async function visit(file, look, options) {
+  const server = await serve(file)
+  try {
+    const { page, faults } = await open(browser, server.url, options)
+    await look(page, server)
+    assert.deepEqual(faults, [])
+    await page.context().close()
+  } finally {
+    await server.stop()
+  }
+}
+
+/** Irradiance by `exitance probe` where a reading was taken: luminance of its three bands. */
+export function probed(file, reading) {
+  const numbers = [...reading.point, ...reading.normal]
+  writeFileSync(glb('point.csv'), `x,y,z,nx,ny,nz\n${numbers.join(',')}\n`)
+  const [names, values] = run('probe', file, '--points', 'point.csv', '-o', '-').trim().split('\n').map((l) => l.split(','))
+  const value = (name) => Number(values[names.indexOf(name)])
+  return 0.2126 * value('E_r') + 0.7152 * value('E_g') + 0.0722 * value('E_b')
+}
+export const reading = (page, x, y) => page.evaluate(([px, py]) => {
+  const r = window.exitance.viewer.readAt(px, py)
+  return r && { ...r, point: r.point.toArray(), normal: r.normal.toArray() }
+}, [x, y])
