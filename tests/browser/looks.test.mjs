@@ -100,7 +100,12 @@ describe('looks', () => {
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390)
     await page.click('#panel-toggle')
     assert.ok(await page.locator('#weight-0').isVisible())
-  }, { viewport: { width: 390, height: 780 }, locale: 'de-DE' }))
+    await page.click('#panel-toggle')
+    const shown = await page.textContent('#read-distance')
+    await page.touchscreen.tap(100, 300)
+    await page.waitForFunction((before) => document.getElementById('read-distance')?.textContent !== before, shown)
+    assert.ok(await page.locator('#readout').isVisible(), 'a tap reads, and the reading stays')
+  }, { viewport: { width: 390, height: 780 }, locale: 'de-DE', hasTouch: true }))
 })
 
 describe('size', () => {

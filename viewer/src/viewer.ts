@@ -52,7 +52,9 @@ export class Viewer extends EventTarget {
     this.movement.stops = () => this.places
     this.movement.addEventListener('change', () => this.changed())
     canvas.addEventListener('pointermove', (e) => this.hover({ x: e.clientX, y: e.clientY }))
-    canvas.addEventListener('pointerleave', () => this.hover(undefined))
+    // A finger that is lifted has pointed at what it left.
+    canvas.addEventListener('pointerdown', (e) => this.hover({ x: e.clientX, y: e.clientY }))
+    canvas.addEventListener('pointerleave', (e) => e.pointerType !== 'touch' && this.hover(undefined))
     matchMedia('(prefers-color-scheme: light)').addEventListener('change', () => this.changed())
   }
 
