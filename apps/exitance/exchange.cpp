@@ -128,7 +128,10 @@ class ExchangeCommand {
     }
 
     void run() {
-        if (!output_.empty()) require_output(output_, scene_, {".csv"});
+        if (!output_.empty()) {
+            require_output(output_, scene_, {".csv"});
+            if (!table_.empty()) require_output(output_, table_, {".csv"});
+        }
         reading_.apply({});
         std::optional<double> surroundings;
         if (!surroundings_.empty()) surroundings = surroundings_temperature();

@@ -55,6 +55,8 @@ class Exchange(ProgramTest):
         table = self.write("s.csv", "name,temperature,heat_flux,emissivity\n"
                                     "room_*,27 °C,,\nroom_floor,,0,0.5\n\"box_*\",77 C,,0.8\n")
         done = self.succeed("exchange", TWO_BOXES, "--surfaces", table)
+        self.refuse(WRONG_USE, "would replace the input", "exchange", TWO_BOXES, "--surfaces", table,
+                    "-o", table)
         lines = done.stdout.splitlines()
         self.assertEqual(len(lines), 1 + 12 + 1)
         floor = lines[1].split()

@@ -253,6 +253,10 @@ class FormFactors(ProgramTest):
         self.refuse(COULD_NOT_FINISH, "no such folder", *run, "-o", "none", "--format", "openfoam")
         self.refuse(COULD_NOT_FINISH, "cannot write", *run, "-o", "none/F.csv")
         self.refuse(WRONG_USE, "accuracy", *run, "-o", "F.csv", "--accuracy", "0")
+        self.refuse(WRONG_USE, "--samples does nothing with --method auto", *run, "-o", "F.csv",
+                    "--samples", "5")
+        self.refuse(WRONG_USE, r"--by patch: about .* rows .* expected at most 1e\+06", *run, "-o",
+                    "F.csv", "--by", "patch", "--patch-size", "1e-6")
         self.refuse(WRONG_USE, "there are 6 surfaces", *run, "-o", "F.csv", "--row", "7")
         strange = self.write("strange.vs3", enclosure("encl=yes"))
         self.refuse(BAD_INPUT, r"strange\.vs3: C encl=yes, expected a number",

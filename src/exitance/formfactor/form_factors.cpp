@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/formfactor/form_factors.h"
 
+#include <fmt/format.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
@@ -57,6 +58,12 @@ FormFactors form_factors(const Scene& scene, const FormFactorOptions& options,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
                             : static_cast<std::size_t>(tbb::info::default_concurrency()));
     const FormFactorMethod& method = find_form_factor_method(options.method);
+    if (options.sampling.samples && !method.takes_samples)
+        throw Error(
+            Fault::wrong_use,
+            fmt::format("--samples does nothing with --method {}, whose effort follows from "
+                        "--accuracy",
+                        method.name));
     Enclosure enclosure = make_enclosure(scene, options.enclosure);
     const std::vector<std::string> names = names_of(enclosure);
     MethodCounters counters;

@@ -35,19 +35,19 @@ Options describe(MethodOptions& o) {
 
 std::span<const FormFactorMethod> form_factor_methods() {
     static constexpr std::array methods{
-        FormFactorMethod{"auto", "exact integrals, with shafts to find what is between",
+        FormFactorMethod{"auto", "exact integrals, with shafts to find what is between", false,
                          pairwise_form_factors},
         FormFactorMethod{"analytic", "closed form of each pair, with rays to find what is between",
-                         analytic_form_factors},
-        FormFactorMethod{"contour", "numeric double contour integral (Goral et al. 1984)",
+                         false, analytic_form_factors},
+        FormFactorMethod{"contour", "numeric double contour integral (Goral et al. 1984)", true,
                          contour_form_factors},
         FormFactorMethod{"disk", "polygons as discs, with a ray to each (Wallace et al. 1989)",
-                         disk_form_factors},
-        FormFactorMethod{"hemicube", "item buffers on half a cube (Cohen & Greenberg 1985)",
+                         true, disk_form_factors},
+        FormFactorMethod{"hemicube", "item buffers on half a cube (Cohen & Greenberg 1985)", true,
                          hemicube_form_factors},
-        FormFactorMethod{"hemisphere", "cosine-distributed rays (Malley 1988)",
+        FormFactorMethod{"hemisphere", "cosine-distributed rays (Malley 1988)", true,
                          hemisphere_form_factors},
-        FormFactorMethod{"monte-carlo", "pairs of random places with a ray between them",
+        FormFactorMethod{"monte-carlo", "pairs of random places with a ray between them", true,
                          monte_carlo_form_factors},
     };
     return methods;

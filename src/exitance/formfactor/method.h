@@ -47,7 +47,8 @@ struct MethodCall {
 
 struct FormFactorMethod {
     const char* name;
-    const char* what;  ///< one line, with its source
+    const char* what;    ///< one line, with its source
+    bool takes_samples;  ///< MethodOptions::samples
     /// Rows are missing where the call was cancelled. Deterministic for any number of threads.
     FormFactorMatrix (*compute)(const MethodCall&);
 };

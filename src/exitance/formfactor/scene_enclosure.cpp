@@ -181,7 +181,22 @@ class EnclosureBuilder {
         return std::max(1e-9, 0.05 * std::sqrt(scene_.area()));
     }
 
+    // A row takes half a kilobyte before there is any matrix.
+    void refuse_too_many() const {
+        constexpr double most = 1e6;
+        double rows = scene_.area() / (patch_size() * patch_size());
+        if (by_ == "element") rows *= std::pow(4.0, options_.levels);
+        if (rows > most)
+            throw Error(
+                Fault::wrong_use,
+                fmt::format("--by {}: about {:.2g} rows with patches of {:g} m, expected at "
+                            "most {:g}; larger patches (--patch-size){}",
+                            by_, rows, patch_size(), most,
+                            by_ == "element" ? " or fewer --levels" : ""));
+    }
+
     void add_patches() {
+        refuse_too_many();
         Mesh mesh(scene_, MeshOptions::of_patches(patch_size()));
         if (by_ == "element") divide(mesh);
         for (const Patch& patch : mesh.patches()) {

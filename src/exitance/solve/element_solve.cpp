@@ -222,7 +222,7 @@ class ElementSolve {
             const auto R = solver.reflected()[RowId(i)];
             std::copy(R.begin(), R.end(), radiosity_.shot[rows_.elements[i]].begin());
         }
-        if (options_.gather_vertices)
+        if (options_.gather_vertices && !interrupted())
             report_.rays += gather_at_vertices(radiosity_, caster_, solver.reflected(), tolerance_,
                                                options_.column);
         else
