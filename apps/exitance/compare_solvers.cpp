@@ -78,6 +78,7 @@ std::string compare_solvers(const Scene& scene, const SolveOptions& options, con
         table += row(one, run(scene, one, cancel), reference);
     };
     if (!options.transport) add(adaptive_shooting, {});
+    if (!options.transport && !options.unshot && options.overshoot) add(adaptive_gathering, {});
     for (const ElementMethod& method : element_methods())
         for (const std::string_view transport : transports)
             if (!options.transport || *options.transport == transport)

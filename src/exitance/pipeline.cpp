@@ -12,7 +12,9 @@
 #include "exitance/solution/error_estimate.h"
 #include "exitance/solution/extract.h"
 #include "exitance/solve/divide.h"
+#include "exitance/solve/element_methods.h"
 #include "exitance/solve/element_solve.h"
+#include "exitance/solve/gathering.h"
 #include "exitance/solve/merge.h"
 #include "exitance/solve/shooting.h"
 #include "exitance/solve/unshot.h"
@@ -90,14 +92,14 @@ void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const
 }
 
 Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
-                        const Radiosity& radiosity, const Shooting& solver) {
+                        const Radiosity& radiosity, const Shooting* solver) {
     if (!snapshots.take || (!snapshots.every && !snapshots.wanted)) return observe;
     return [&, next = snapshots.every](const Progress& progress) mutable {
         if (observe) observe(progress);
         const bool due = next && progress.shots >= *next;
         if (due) next = progress.shots + *snapshots.every;
         if (!due && !(snapshots.wanted && snapshots.wanted(progress))) return;
-        take_snapshot(snapshots, radiosity, &solver);
+        take_snapshot(snapshots, radiosity, solver);
     };
 }
 
@@ -121,17 +123,19 @@ void require_polygons(const Scene& scene) {
 /// tell whether it did, and if not, more is demanded while that helps.
 struct Demand {
     double error;
-    double found = INFINITY;               ///< by the held-out points, the last time
-    std::optional<double> estimate_now{};  ///< by them, whether or not more is demanded
+    double found = INFINITY;                  ///< by the held-out points, the last time
+    std::optional<double> estimate_now{};     ///< by them, whether or not more is demanded
+    std::optional<ErrorEstimate> estimate{};  ///< of the solution as it is, if it was looked at
 
     bool rise(const SolveOptions& options, const Radiosity& radiosity) {
         constexpr double least = 0.1, worthwhile = 0.9;
         if (!options.adaptive || options.unshot || options.next_shot) return false;
-        const auto estimate = estimate_error(extract_solution(radiosity), options.seed);
+        estimate = estimate_error(extract_solution(radiosity), options.seed);
         if (estimate) estimate_now = estimate->rms;
         if (!estimate || estimate->rms <= options.error) return false;
         if (estimate->rms > worthwhile * found || error <= least * options.error) return false;
         found = estimate->rms;
+        estimate.reset();
         error *= std::clamp(0.8 * options.error / found, 0.4, 0.8);
         return true;
     }
@@ -159,17 +163,22 @@ struct Task {
 struct Done {
     EnergyBalance energy;
     Counters counters;
+    std::optional<ErrorEstimate> error{};  ///< if it is known already
 };
+
+std::function<bool()> interruption(const Task& task) {
+    return [&task] {
+        return (task.stop.cancel && task.stop.cancel->requested()) ||
+               (task.stop.seconds && task.clock.seconds() > *task.stop.seconds);
+    };
+}
 
 Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
     const SolveOptions& options = task.options;
     ShootingOptions shooting = shooting_options(options, task.size);
-    shooting.interrupted = [&] {
-        return (task.stop.cancel && task.stop.cancel->requested()) ||
-               (options.time && task.clock.seconds() > *options.time);
-    };
+    shooting.interrupted = interruption(task);
     Shooting solver(radiosity, shooting);
-    const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, solver);
+    const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, &solver);
     Demand demand{options.error};
     const Observer tell = [&](Progress progress) {
         progress.error = demand.estimate_now;
@@ -184,6 +193,36 @@ Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
     out.counters = counters_of(radiosity);
     out.counters["shots"] = static_cast<double>(solver.shots());
     out.counters["rays"] = static_cast<double>(solver.rays());
+    return out;
+}
+
+Done gather_adaptively(Radiosity& radiosity, const Task& task) {
+    const SolveOptions& options = task.options;
+    GatheringOptions gathering;
+    gathering.error = options.error;
+    gathering.min_area = min_area(options, options.error, task.size);
+    gathering.adaptive = options.adaptive;
+    gathering.merge = options.merge;
+    gathering.column.seed = options.seed;
+    gathering.column.most_rays = 512;
+    gathering.interrupted = interruption(task);
+    Gathering solver(radiosity, gathering);
+    const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, nullptr);
+    Demand demand{options.error};
+    const Observer tell = [&](Progress progress) {
+        progress.error = demand.estimate_now;
+        if (watch) watch(progress);
+    };
+    while (run(solver, task.stop, task.clock, tell) == Ended::converged &&
+           demand.rise(options, radiosity))
+        solver.demand(demand.error, min_area(options, demand.error, task.size));
+    solver.finish();
+    if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
+    Done out{balance(radiosity, options.seed), counters_of(radiosity)};
+    out.counters["rays"] = static_cast<double>(solver.rays());
+    out.counters["shots"] = 0;
+    out.counters["bytes"] = static_cast<double>(solver.bytes());
+    out.error = demand.estimate;
     return out;
 }
 
@@ -218,12 +257,13 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     if (const auto longest = element_size(options, size)) divide_evenly(radiosity, *longest);
     const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
                     clock,   observe, snapshots};
-    const Done done = by_elements(options) ? solve_by_elements(radiosity, task)
-                                           : shoot_adaptively(radiosity, task);
+    const Done done = options.solver == adaptive_gathering ? gather_adaptively(radiosity, task)
+                      : by_elements(options)               ? solve_by_elements(radiosity, task)
+                                                           : shoot_adaptively(radiosity, task);
 
     Solution solution = extract_solution(radiosity);
     solution.energy = done.energy;
-    solution.error = estimate_error(solution, options.seed);
+    solution.error = done.error ? done.error : estimate_error(solution, options.seed);
     solution.options = used(options);
     solution.counters = done.counters;
     return solution;

@@ -23,8 +23,8 @@ struct Method {
     double less = 1;
 };
 
-/// Adaptive shooting, and every solver of elements with every transport: a new one is added to
-/// solve/element_methods.h and meets them all.
+/// Adaptive shooting and gathering, and every solver of elements with every transport: a new one is
+/// added to solve/element_methods.h and meets them all.
 std::vector<Method> methods() {
     Method shooting;
     shooting.name = "shooting";
@@ -32,7 +32,10 @@ std::vector<Method> methods() {
     Method overshooting = shooting;
     overshooting.name = "overshooting";
     overshooting.options.overshoot = true;
-    std::vector<Method> all{shooting, overshooting};
+    Method gathering;
+    gathering.name = "gathering";
+    gathering.options.solver = adaptive_gathering;
+    std::vector<Method> all{shooting, overshooting, gathering};
     for (const ElementMethod& method : element_methods())
         for (const std::string_view transport : transports) {
             Method by_elements{std::string(method.name) + "_" + std::string(transport), {}, 4};

@@ -4,17 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "exitance/formfactor/point_polygon.h"
-#include "exitance/math/frame.h"
-#include "exitance/math/warp.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
 #include "exitance/transport/distant_column.h"
 #include "exitance/transport/luminaire_column.h"
 #include "exitance/visibility/beyond_glass.h"
+#include "exitance/visibility/hemisphere_rays.h"
 #include "exitance/visibility/visible_fraction.h"
 
 namespace exitance {
@@ -263,7 +261,7 @@ class Gatherer {
 
     void add_reflection(std::size_t point) const {
         const GatherPoint& p = points_[point];
-        const Frame frame(p.normal);
+        const Vec3f normal(p.normal);
         const Vec3f origin(clear_of_surfaces(surfaces_, p) - surfaces_.caster().middle());
         const std::uint64_t key = hash_bits(options_.seed, point, 1);
         const std::uint32_t packets =
@@ -271,19 +269,10 @@ class Gatherer {
         if (packets == 0) return;
 
         RayPacket rays;
-        rays.origin_x.fill(origin.x), rays.origin_y.fill(origin.y), rays.origin_z.fill(origin.z);
-        rays.near.fill(0.0f), rays.far.fill(std::numeric_limits<float>::infinity());
-        rays.active = 0xffffu;
         RayCaster::PacketHits hits;
         std::vector<double> sum(s_.columns(), 0.0), H(s_.columns());
         for (std::uint32_t packet = 0; packet < packets; ++packet) {
-            for (std::uint32_t i = 0; i < RayPacket::width; ++i) {
-                const auto u = low_discrepancy(key, packet * std::uint32_t{RayPacket::width} + i);
-                const Vec3 direction = frame.to_world(cosine_hemisphere(u));
-                rays.direction_x[i] = static_cast<float>(direction.x);
-                rays.direction_y[i] = static_cast<float>(direction.y);
-                rays.direction_z[i] = static_cast<float>(direction.z);
-            }
+            aim_hemisphere(rays, origin, normal, key, packet);
             std::array<double, RayPacket::width> share;
             share.fill(1);
             const auto add = [&](std::size_t i, const RayCaster::PacketHits& met) {

@@ -26,6 +26,7 @@ std::span<const ElementMethod> element_methods();
 const ElementMethod& element_method(const std::string& name);
 
 inline constexpr std::string_view adaptive_shooting = "shooting";
+inline constexpr std::string_view adaptive_gathering = "gathering";
 inline constexpr std::array<std::string_view, 3> transports{"dense", "sparse", "on-the-fly"};
 
 }  // namespace exitance

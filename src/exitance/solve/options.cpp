@@ -11,6 +11,7 @@ namespace {
 std::vector<std::string> solver_names() {
     std::vector<std::string> names{std::string(adaptive_shooting)};
     for (const ElementMethod& method : element_methods()) names.emplace_back(method.name);
+    names.emplace_back(adaptive_gathering);
     return names;
 }
 
@@ -28,7 +29,9 @@ Options describe(SolveOptions& o) {
          "", 1e-4, 1},
         {"time", &o.time, "stop after this long and keep the best solution so far", "s", 0},
         {"solver", &o.solver,
-         "how the system is solved: shooting = progressive refinement that divides elements where "
+         "how the system is solved: gathering = a rough balance on stored ray hits and one "
+         "gathering "
+         "step where light needs it, shooting = progressive refinement; both divide elements where "
          "light needs it; the others are for one exitance per element of an even mesh",
          "", 0, 0, solver_names()},
         {"transport",
@@ -103,7 +106,7 @@ Options describe(SolveOptions& o) {
 }
 
 bool by_elements(const SolveOptions& options) {
-    return options.solver != adaptive_shooting;
+    return options.solver != adaptive_shooting && options.solver != adaptive_gathering;
 }
 
 bool of_elements(const std::string& option) {
@@ -111,27 +114,37 @@ bool of_elements(const std::string& option) {
            option == "element-rays" || option == "element-size";
 }
 
+namespace {
+
+// Of the solvers that divide elements as light needs it.
+void require_adaptive(const SolveOptions& o) {
+    const std::string with = " cannot be had with --solver " + o.solver;
+    const std::string elements = "; expected a solver of elements, as --solver jacobi";
+    if (o.transport && *o.transport != "on-the-fly")
+        refuse("--transport " + *o.transport + with +
+               ": it divides elements while it works, which a stored matrix knows nothing of; "
+               "expected on-the-fly, or --solver southwell, which is shooting with a matrix");
+    if (o.factors) refuse("--factors" + with + ", which has no matrix of elements" + elements);
+    if (o.vertices)
+        refuse("--vertices" + with + ", which solves for the vertices themselves" + elements);
+    if (o.element_rays) refuse("--element-rays" + with + ", which has no rows" + elements);
+    if (o.solver == adaptive_shooting) return;
+    const std::string shooting = "; expected --solver shooting";
+    if (o.unshot) refuse("--unshot" + with + ", which is done with all light at once" + shooting);
+    if (o.next_shot) refuse("--next-shot" + with + ", which does not shoot" + shooting);
+    if (!o.overshoot) refuse("--no-overshoot" + with + ", which does not shoot" + shooting);
+    if (!o.occlusion)
+        refuse("--no-occlusion" + with +
+               ": rays tell what a vertex sees, and they end where they hit" + shooting);
+    if (o.form_factor != "lambert")
+        refuse("--form-factor " + o.form_factor + with +
+               ": rays tell what a vertex sees of what reflects" + shooting);
+}
+
+}  // namespace
+
 void require_possible(const SolveOptions& o) {
-    if (!by_elements(o)) {
-        if (o.transport && *o.transport != "on-the-fly")
-            refuse("--transport " + *o.transport +
-                   " cannot be had with --solver shooting: it divides elements while it shoots, "
-                   "which a stored matrix knows nothing of; expected on-the-fly, or --solver "
-                   "southwell, which is shooting with a matrix");
-        if (o.factors)
-            refuse(
-                "--factors cannot be had with --solver shooting, whose factors are those of "
-                "--form-factor; expected a solver of elements, as --solver jacobi");
-        if (o.vertices)
-            refuse(
-                "--vertices cannot be had with --solver shooting, which solves for the vertices "
-                "themselves; expected a solver of elements, as --solver jacobi");
-        if (o.element_rays)
-            refuse(
-                "--element-rays cannot be had with --solver shooting, which casts rays from "
-                "vertices to patches; expected a solver of elements, as --solver jacobi");
-        return;
-    }
+    if (!by_elements(o)) return require_adaptive(o);
     const std::string with = " cannot be had with --solver " + o.solver;
     if (o.min_area)
         refuse("--min-area" + with + ": its elements stay as they are; expected --element-size");

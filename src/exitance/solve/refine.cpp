@@ -30,7 +30,6 @@ constexpr float most_tolerant = 8;
 // The least side of a long element, in terms of its length, that its smallness is judged by.
 constexpr double longest_aspect = 8;
 constexpr std::size_t batch_size = 1024;
-constexpr float noise_deviations = 1;
 
 struct Place {
     FaceId face;
@@ -47,7 +46,7 @@ struct PlaceHash {
 
 // What is known of the shooter's light at the corners of an element.
 struct Corners {
-    float low = INFINITY, high = -INFINITY, mean = 0, variance = 0;
+    float low = INFINITY, high = -INFINITY, mean = 0, variance = 0, most_variance = 0;
     float least_seen = 1, most_seen = 0;
     int open = 0;
 };
@@ -90,6 +89,10 @@ class Refinement {
         return options_.tolerance * std::clamp(share, 1.0f, most_tolerant);
     }
 
+    float gross_departure(const Element& element) const {
+        return options_.gross * options_.tolerance * std::sqrt(options_.area / element.area);
+    }
+
     Corners corners_of(const Element& element) const {
         Corners out;
         for (const VertexId v : element.corners()) {
@@ -100,6 +103,7 @@ class Refinement {
             out.most_seen = std::max(out.most_seen, seen);
             out.mean += here;
             out.variance += radiosity_.variance[v.index()];
+            out.most_variance = std::max(out.most_variance, radiosity_.variance[v.index()]);
             ++out.open;
         }
         if (out.open) out.mean /= static_cast<float>(out.open);
@@ -118,9 +122,12 @@ class Refinement {
 
     bool worth_testing(ElementId id) const {
         const Element& element = radiosity_.mesh[id];
-        if (is_small(element) || element.level >= Mesh::max_level) return false;
+        if (element.level >= Mesh::max_level) return false;
         if (radiosity_.black_lamp()[radiosity_.mesh.face_of(element).polygon.value]) return false;
         const Corners c = corners_of(element);
+        if (is_small(element))
+            return c.open == static_cast<int>(element.count) &&
+                   c.high - c.low > gross_departure(element);
         // Covered at all corners, perhaps by different objects with light between them.
         if (c.open == 0) return options_.thorough && element.level <= thorough_level;
         const float allowed = tolerance(element);
@@ -166,7 +173,8 @@ class Refinement {
         const auto middle = Mesh::midpoints(element);
         const Corners all = corners_of(element);
         const std::size_t stride = radiosity_.columns.stride;
-        float departure = 0, least_seen = all.least_seen, most_seen = all.most_seen;
+        float departure = 0, most_variance = all.most_variance, least_seen = all.least_seen,
+              most_seen = all.most_seen;
         bool covered = all.open < static_cast<int>(element.count), any_open = false;
         for (std::uint32_t i = 0; i < middle.count; ++i) {
             const auto [u, v] = middle.at[i];
@@ -189,11 +197,15 @@ class Refinement {
             }
             any_open = true;
             least_seen = std::min(least_seen, seen), most_seen = std::max(most_seen, seen);
+            most_variance = std::max(most_variance, variance);
             // What sampling noise explains is no reason to split.
-            const float noise = noise_deviations * std::sqrt(variance + 0.5f * all.variance);
+            const float noise =
+                options_.shared_noise ? 0.0f : std::sqrt(variance + 0.5f * all.variance);
             const float found = std::abs(here - expected(element, i, all.mean));
             departure = std::max(departure, found - noise);
         }
+        if (options_.shared_noise) departure -= std::sqrt(1.5f * most_variance);
+        if (is_small(element)) return departure > gross_departure(element);
         if (all.open == 0) return any_open;
         // An object stands on the element: only small elements may be half covered.
         if (covered && all.high > tolerance(element)) return true;

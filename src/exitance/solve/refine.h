@@ -3,6 +3,7 @@
 // their corners says.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -18,6 +19,12 @@ struct RefineOptions {
     /// Test every patch that gets light, not only those whose corners differ: something small may
     /// throw its shadow between them.
     bool thorough = false;
+    /// Beside a penumbra the rays of a point may agree by chance: no point of an element is taken
+    /// to know better than its most uncertain one.
+    bool shared_noise = false;
+    /// Small elements are divided all the same where they are wrong by so many times what would be
+    /// their share in the square error of the whole; a few such do not count.
+    float gross = INFINITY;
     std::function<bool()> interrupted{};  ///< true: the mesh stays as it is so far
 };
 

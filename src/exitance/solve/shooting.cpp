@@ -114,9 +114,12 @@ void Shooting::shoot_emission() {
 void Shooting::refine_mesh() {
     // As many elements as there are patches, each wrong by the tolerance, are wrong by it together.
     const double share = radiosity_.area() / static_cast<double>(radiosity_.mesh.patches().size());
-    const RefineOptions options{tolerance(), static_cast<float>(share),
-                                static_cast<float>(options_.min_area * lit_share_), !refined_,
-                                options_.interrupted};
+    RefineOptions options;
+    options.tolerance = tolerance();
+    options.area = static_cast<float>(share);
+    options.min_area = static_cast<float>(options_.min_area * lit_share_);
+    options.thorough = !refined_;
+    options.interrupted = options_.interrupted;
     rays_ += refine(radiosity_, options, [&](const Receivers& points, Received& lit) {
         return illuminate(points, lit);
     });

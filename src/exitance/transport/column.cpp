@@ -15,16 +15,16 @@ namespace exitance {
 
 namespace {
 
-// Half of the rays, at most 64, find out whether there is a penumbra at all: what hides a tenth of
-// the source must not be missed.
-RayBudget budget_for(const float* factors, std::size_t size, float brightness) {
+// Half of the rays, within limits, find out whether there is a penumbra at all.
+RayBudget budget_for(const float* factors, std::size_t size, float brightness,
+                     const ColumnOptions& options) {
     RayBudget budget;
     for (std::size_t r = 0; r < size; ++r) {
-        const float most = rays_for(factors[r] * brightness);
+        const float most = rays_for(factors[r] * brightness, float(options.most_rays));
         budget.most[r] = static_cast<std::uint16_t>(most);
-        budget.probe[r] = factors[r] > 0.0f
-                              ? static_cast<std::uint8_t>(std::clamp(most / 2.0f, 1.0f, 64.0f))
-                              : std::uint8_t{0};
+        budget.probe[r] = factors[r] > 0.0f ? static_cast<std::uint8_t>(std::clamp(
+                                                  most / 2.0f, 1.0f, float(options.most_probes)))
+                                            : std::uint8_t{0};
     }
     return budget;
 }
@@ -47,7 +47,7 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
         const bool disk = options.factor == PointFactor::disk;
         if (!options.occlusion && !disk) return;
 
-        RayBudget budget = budget_for(factors.data(), block.size, brightness);
+        RayBudget budget = budget_for(factors.data(), block.size, brightness, options);
         // A disc stands for its share of the source only from afar: near sources need more of them.
         for (std::size_t r = 0; disk && r < block.size; ++r) {
             if (!budget.probe[r]) continue;

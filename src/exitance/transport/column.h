@@ -19,6 +19,10 @@ enum class PointFactor {
 struct ColumnOptions {
     PointFactor factor = PointFactor::lambert;
     bool occlusion = true;
+    /// Rays, of those a receiver deserves half at most, that find out whether it lies in a penumbra
+    /// at all: what hides less than twice the share of one of them may be missed.
+    int most_probes = 64;
+    int most_rays = 256;  ///< to a source from one receiver, at most RayBudget::largest
     std::uint64_t seed = 0;
 };
 

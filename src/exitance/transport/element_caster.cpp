@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <bit>
-#include <limits>
 
-#include "exitance/math/frame.h"
 #include "exitance/math/warp.h"
 #include "exitance/run/random.h"
 #include "exitance/visibility/beyond_glass.h"
+#include "exitance/visibility/hemisphere_rays.h"
 
 namespace exitance {
 
@@ -22,6 +21,7 @@ RayCaster make_caster(const ElementScene& scene, const ElementRows& rows) {
     std::vector<RayCaster::Face> faces;
     std::vector<char> open_backs;
     std::vector<float> transmittance;
+    bool any_two_sided = false;
     for (const ElementId id : rows.elements) {
         const Element& element = scene.mesh[id];
         const Face& face = scene.face(id);
@@ -32,8 +32,10 @@ RayCaster make_caster(const ElementScene& scene, const ElementRows& rows) {
         for (std::uint32_t c = 0; c < element.count; ++c) points.push_back(corners[c] + shift);
         faces.push_back({first, first + 1, first + 2, first + element.count - 1});
         open_backs.push_back(scene.two_sided_face(face));
+        any_two_sided = any_two_sided || open_backs.back();
         transmittance.push_back(scene.caster.transmittance(face.polygon.value));
     }
+    if (!any_two_sided) open_backs.clear();  // asking costs rays a call for every hit
     return RayCaster(points, faces, std::move(open_backs), std::move(transmittance));
 }
 
@@ -73,27 +75,22 @@ bool ElementCaster::cast_place(std::size_t row, std::uint32_t place, Ends& ends)
 void ElementCaster::cast_packet(const Vec3& point, const Vec3& normal, std::uint64_t key,
                                 std::uint32_t packet, Ends& ends) const {
     ends.count = 0, ends.black = 0;
-    const Frame frame(normal);
-    const Vec3 origin = point + normal * caster_.clearance() - caster_.middle();
     RayPacket rays;
-    rays.near.fill(0.0f), rays.far.fill(std::numeric_limits<float>::infinity());
-    for (std::uint32_t k = 0; k < RayPacket::width; ++k)
-        rays.aim(k, origin,
-                 frame.to_world(cosine_hemisphere(
-                     low_discrepancy(key, packet * std::uint32_t{RayPacket::width} + k))));
+    aim_hemisphere(rays, Vec3f(point + normal * caster_.clearance() - caster_.middle()),
+                   Vec3f(normal), key, packet);
     std::array<float, RayPacket::width> through;
     through.fill(1.0f);
     RayCaster::PacketHits hits;
     closest_beyond_glass(caster_, rays, hits, [&](std::uint32_t k, const auto& met) {
         const std::uint32_t pane = met.primitive[k];
-        if (met.front >> k & 1u) ends.add(pane, through[k]);
+        if (met.front >> k & 1u) ends.add(met, k, through[k]);
         through[k] *= caster_.transmittance(pane);
     });
     for (std::uint32_t k = 0; k < RayPacket::width; ++k) {
         const std::uint32_t row = hits.primitive[k];
         if (row == 0xffffffffu) continue;
         if (hits.front >> k & 1u)
-            ends.add(row, through[k]);
+            ends.add(hits, k, through[k]);
         else if (!two_sided_[row])
             ++ends.black;
     }

@@ -39,7 +39,30 @@ class ElementCaster {
         return cast;
     }
 
-    /// The same from one point with unit normal, `key` picks its directions; all rays() are cast.
+    /// Ends of sixteen rays: where they stop, and the panes on their way.
+    struct Ends {
+        static constexpr std::uint32_t most = 16 * RayPacket::width;
+        std::uint32_t count = 0;
+        std::array<std::uint32_t, most> row;
+        std::array<float, most> rays;      ///< less than one behind glass
+        std::array<float, most> u, v;      ///< on the row's element, in Embree's coordinates
+        std::array<float, most> distance;  ///< [m]
+        std::uint32_t black = 0;           ///< rays that ended on the back of a one-sided polygon
+
+        void add(const RayCaster::PacketHits& hits, std::uint32_t lane, float share) {
+            if (count == most) return;
+            row[count] = hits.primitive[lane], rays[count] = share;
+            u[count] = hits.u[lane], v[count] = hits.v[lane];
+            distance[count++] = hits.distance[lane];
+        }
+    };
+
+    /// Packet `packet` of sixteen rays of those that tell what a point with unit normal sees; `key`
+    /// picks their directions. Every power of two of packets is stratified.
+    void cast_packet(const Vec3& point, const Vec3& normal, std::uint64_t key, std::uint32_t packet,
+                     Ends& ends) const;
+
+    /// The same from one point with unit normal: `visit(row, rays)`. All rays() are cast.
     template <class Visit>
     void cast_point(const Vec3& point, const Vec3& normal, std::uint64_t key,
                     const Visit& visit) const {
@@ -53,21 +76,7 @@ class ElementCaster {
     std::size_t bytes() const { return two_sided_.capacity(); }
 
   private:
-    /// Ends of sixteen rays: where they stop, and the panes on their way.
-    struct Ends {
-        static constexpr std::uint32_t most = 16 * RayPacket::width;
-        std::uint32_t count = 0;
-        std::array<std::uint32_t, most> row;
-        std::array<float, most> rays;
-        std::uint32_t black = 0;  ///< rays that ended on the back of a one-sided polygon
-        void add(std::uint32_t at, float share) {
-            if (count == most) return;
-            row[count] = at, rays[count++] = share;
-        }
-    };
     bool cast_place(std::size_t row, std::uint32_t place, Ends& ends) const;
-    void cast_packet(const Vec3& point, const Vec3& normal, std::uint64_t key, std::uint32_t packet,
-                     Ends& ends) const;
 
     ElementScene scene_;
     const ElementRows& rows_;

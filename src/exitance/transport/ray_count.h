@@ -12,10 +12,9 @@ namespace exitance {
 /// tolerance): n = (2 c)^4/3 brings that to a quarter of the tolerance. Fainter sources get one
 /// ray: their errors are independent and average out over the many of them.
 template <class Real>
-Real rays_for(Real contribution) {
+Real rays_for(Real contribution, Real most = Real(256)) {
     if (!(contribution > Real(0.5))) return Real(1);
-    return std::clamp(std::ceil(std::pow(Real(2) * contribution, Real(4.0 / 3.0))), Real(1),
-                      Real(256));
+    return std::clamp(std::ceil(std::pow(Real(2) * contribution, Real(4.0 / 3.0))), Real(1), most);
 }
 
 /// Standard deviation to expect of the visible share of a penumbra after `samples`.

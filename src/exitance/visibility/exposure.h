@@ -12,7 +12,8 @@ namespace exitance {
 
 /// exposed[i] of receivers [first, first + exposed.size()): false if most of sixteen rays over the
 /// hemisphere meet the back of a one-sided polygon, which no light can come from: the place is
-/// buried in a solid, and its zero irradiance says nothing about the surface beside it.
+/// buried in a solid, and its zero irradiance says nothing about the surface beside it. Where the
+/// first four rays agree they decide.
 /// `two_sided`: per primitive of the caster.
 void find_exposed(const RayCaster& caster, std::span<const char> two_sided,
                   const Receivers& receivers, std::size_t first, std::span<char> exposed);

@@ -13,7 +13,7 @@ namespace exitance {
 namespace {
 
 constexpr std::size_t width = RayPacket::width;
-constexpr std::size_t most_samples = 256;
+constexpr std::size_t most_samples = RayBudget::largest;
 
 // The first points of Sobol's sequence; a receiver's own pattern is an exclusive-or away.
 constexpr auto sobol_points = [] {

@@ -12,8 +12,10 @@ namespace exitance {
 
 /// Per receiver of a block: how many rays to cast.
 struct RayBudget {
+    static constexpr std::uint16_t largest = 1024;
     std::array<std::uint8_t, ReceiverBlock::capacity> probe;  ///< first; 0 = leave it out
-    std::array<std::uint16_t, ReceiverBlock::capacity> most;  ///< if the probes disagree, ≤ 256
+    std::array<std::uint16_t, ReceiverBlock::capacity>
+        most;  ///< if the probes disagree, ≤ `largest`
 };
 
 /// Per receiver of a block. V is what glass lets through, between hidden, 0, and seen, 1.

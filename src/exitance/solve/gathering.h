@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two passes: a rough balance of the whole scene on stored ray hits, then one gathering step at the
+// vertices that people see (final gather, Reichert 1992), on a mesh that is refined for it. What a
+// vertex gets straight from lamps, sun and sky is evaluated apart, exactly.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "exitance/mesh/field.h"
+#include "exitance/solve/cast_light.h"
+#include "exitance/solve/indirect.h"
+#include "exitance/solve/radiosity.h"
+#include "exitance/solve/reflected_light.h"
+#include "exitance/solve/solver.h"
+#include "exitance/transport/column.h"
+
+namespace exitance {
+
+struct GatheringOptions {
+    double error = 0.02;     ///< RMS error of irradiance relative to its mean to aim at
+    double min_area = 1e-4;  ///< elements are not divided below this area [m²]
+    bool adaptive = true;
+    bool merge = true;  ///< elements that the light does not need
+    ColumnOptions column{};
+    std::function<bool()> interrupted{};  ///< asked during long steps: true ends them
+};
+
+class Gathering final : public Solver {
+  public:
+    /// `radiosity` outlives the solver.
+    Gathering(Radiosity& radiosity, const GatheringOptions& options);
+
+    /// Direct light and its mesh; the rough balance; then one level of the quadtrees a step. From
+    /// the balance on the vertices have complete light.
+    bool step() override;
+    /// Share of the work left, roughly: 1 until there is light.
+    double unshot() const override;
+    double enough() const override { return 0; }
+    double next_shot() const override { return unshot(); }
+    Progress progress() const override;
+
+    /// To be called where run() ended early: vertices that wait for a gather are interpolated.
+    void finish();
+    /// Begins again on the mesh that there is, for a smaller error.
+    void demand(double error, double min_area);
+    std::uint64_t rays() const { return rays_; }
+    std::size_t bytes() const;
+
+  private:
+    enum class Phase { direct, balance, gather, merge, done };
+
+    void light_directly();
+    void strike_balance();
+    void combine();
+    void merge();
+    /// Direct light of the vertices that have not got any yet.
+    void complete_direct();
+    std::uint64_t cast_direct(const Receivers& receivers, Received& received) const;
+    void weigh();
+    /// Luminance of irradiance that may be wrong.
+    float tolerance() const;
+    float patch_area() const;
+    float min_area() const { return static_cast<float>(options_.min_area * lit_share_); }
+
+    Radiosity& radiosity_;
+    GatheringOptions options_;
+    Phase phase_ = Phase::direct;
+    std::vector<FaceId> emitters_;
+    std::optional<ReflectedLight> reflected_;
+    std::optional<IndirectLight> indirect_;
+    VertexField direct_;  ///< D, of the first vertices, as far as it is known
+    std::vector<float> direct_variance_;
+    double mean_irradiance_ = 0, lit_share_ = 1;
+    std::uint64_t rays_ = 0;
+    int level_ = 0;
+};
+
+}  // namespace exitance

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exitance/solve/indirect.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "exitance/run/random.h"
+
+namespace exitance {
+
+namespace {
+
+// Of the tolerance: what the noise of a gather may be, and how far the middle of an element may be
+// from interpolation.
+constexpr float noise_share = 0.5f, threshold = 0.5f;
+// How many times the tolerance a small element may be wrong by.
+constexpr float most_tolerant = 8;
+// What noise explains is no reason to divide.
+constexpr float noise_deviations = 2;
+// Vertices of small elements may be noisier, too, within reason.
+constexpr float most_noisy = 1.5f;
+// Patches are divided this often at most: what is reflected is known in cells of an eighth of a
+// patch (reflected_light.cpp), and points closer to one see its edges.
+constexpr int most_levels = 4;
+constexpr std::size_t batch_size = 4096;
+
+// Weights of the corners of `whole` at (u, v): bilinear in a quad, barycentric in a triangle.
+std::array<float, 4> weights_at(const Element& whole, std::int32_t u, std::int32_t v) {
+    const float s = static_cast<float>(u - whole.u) / static_cast<float>(whole.size);
+    const float t = static_cast<float>(v - whole.v) / static_cast<float>(whole.size);
+    if (whole.count == 3) return {1 - s - t, s, t, 0};
+    return {(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t};
+}
+
+std::array<std::array<std::int32_t, 2>, 4> corners_of(const Element& e) {
+    if (e.count == 3) return {{{e.u, e.v}, {e.u + e.size, e.v}, {e.u, e.v + e.size}, {e.u, e.v}}};
+    return {{{e.u, e.v}, {e.u + e.size, e.v}, {e.u + e.size, e.v + e.size}, {e.u, e.v + e.size}}};
+}
+
+}  // namespace
+
+IndirectLight::IndirectLight(Radiosity& radiosity, ReflectedLight& source,
+                             const IndirectOptions& options)
+    : irradiance(0, radiosity.columns.count),
+      radiosity_(radiosity),
+      source_(source),
+      options_(options) {
+    admit_new_vertices();
+    for (const Patch& patch : radiosity.mesh.patches()) {
+        if (!radiosity.black_lamp()[radiosity.mesh[patch.face].polygon.index()])
+            open_.push_back(patch.root);
+        else  // nobody asks for the light that they receive
+            radiosity.mesh.for_leaves(patch.root, [&](ElementId id) {
+                for (const VertexId v : radiosity.mesh[id].corners()) known_[v.index()] = 1;
+            });
+    }
+}
+
+// The first complete solution: each vertex has what its patches get, on average.
+void IndirectLight::spread_patches(std::size_t first) {
+    const Mesh& mesh = radiosity_.mesh;
+    std::vector<float> weight(mesh.vertices().size(), 0.0f);
+    const auto for_corners = [&](const auto& visit) {
+        for (std::size_t p = 0; p < mesh.patches().size(); ++p)
+            mesh.for_leaves(mesh.patches()[p].root, [&](ElementId id) {
+                for (const VertexId v : mesh[id].corners())
+                    if (v.index() >= first && radiosity_.exposed[v.index()])
+                        visit(p, v, mesh[id].area);
+            });
+    };
+    for_corners([&](std::size_t, VertexId v, float area) { weight[v.index()] += area; });
+    for_corners([&](std::size_t p, VertexId v, float area) {
+        const auto from = source_.irradiance()[RowId(p)];
+        const auto to = irradiance[v];
+        for (std::size_t c = 0; c < to.size(); ++c) to[c] += area / weight[v.index()] * from[c];
+    });
+}
+
+void IndirectLight::admit_new_vertices() {
+    const std::size_t first = known_.size();
+    make_room();
+    spread_patches(first);
+}
+
+void IndirectLight::make_room() {
+    const std::size_t count = radiosity_.receivers.size();
+    irradiance.resize_rows(count);
+    variance.resize(count, 0.0f);
+    known_.resize(count, 0);
+}
+
+void IndirectLight::set_tolerance(float tolerance, float min_area) {
+    options_.tolerance = tolerance, options_.min_area = min_area;
+    source_.calibrate(noise_share * tolerance);
+}
+
+float IndirectLight::light(VertexId v) const {
+    return radiosity_.columns.luminance(irradiance[v]);
+}
+
+float IndirectLight::tolerance(const Element& element) const {
+    const float share = std::sqrt(options_.area / element.area);
+    return options_.tolerance * std::clamp(share, 1.0f, most_tolerant);
+}
+
+std::uint32_t IndirectLight::rays_for(const Element& element) const {
+    const float allowed = std::min(tolerance(element), most_noisy * options_.tolerance);
+    return source_.rays_for(element.patch, noise_share * allowed);
+}
+
+bool IndirectLight::may_be_divided(const Element& element) const {
+    return options_.adaptive && element.area > options_.min_area && element.level < most_levels;
+}
+
+bool IndirectLight::step() {
+    const Mesh& mesh = radiosity_.mesh;
+    if (open_.empty() || !gather_corners(open_)) return false;
+    std::vector<ElementId> tested, rough, next;
+    std::vector<Test> tests;
+    for (const ElementId id : open_) {
+        const Element& element = mesh[id];
+        std::uint32_t exposed = 0;
+        for (const VertexId v : element.corners()) exposed += radiosity_.exposed[v.index()] ? 1 : 0;
+        if (exposed == element.count) {
+            if (!worth_testing(element)) {
+                closed_.push_back(id);
+                continue;
+            }
+            tested.push_back(id);
+            tests.push_back(test_of(element));
+        } else if (!element.leaf()) {
+            rough.push_back(id);
+        } else if (exposed > 0) {
+            // An object stands on the element: only small elements may be half covered.
+            float high = 0;
+            for (const VertexId v : element.corners()) high = std::max(high, light(v));
+            (high > tolerance(element) ? rough : closed_).push_back(id);
+        }
+    }
+    Receivers points;
+    std::vector<std::uint32_t> rays;
+    for (std::size_t i = 0; i < tests.size(); ++i) {
+        points.add(tests[i].point - radiosity_.caster.middle(), tests[i].normal, tests[i].key);
+        rays.push_back(rays_for(mesh[tested[i]]));
+    }
+    Received received;
+    received.reset(points.size(), radiosity_.columns.stride);
+    std::vector<Surroundings> around(points.size());
+    rays_ += source_.gather(points, rays, received, around);
+    for (std::size_t i = 0; i < tests.size(); ++i) {
+        const Element& element = mesh[tested[i]];
+        const float deviation = source_.deviation(element.patch, rays[i]);
+        // What lies there buried says nothing of the light.
+        const bool covered = around[i].backs > 0.5f;
+        if (covered || fails(element, tests[i].expected, received.light[i], deviation))
+            rough.push_back(tested[i]);
+        else
+            closed_.push_back(tested[i]);
+    }
+    divide(rough);
+    for (std::size_t i = 0; i < tests.size(); ++i) {
+        const Element& element = mesh[tested[i]];
+        const auto v =
+            mesh.find_vertex(mesh.face_of(element), tests[i].place[0], tests[i].place[1]);
+        if (v)
+            know(*v, received.row(i, radiosity_.columns.stride),
+                 source_.deviation(element.patch, rays[i]));
+    }
+    for (const ElementId id : rough) {
+        if (mesh[id].leaf()) continue;
+        for (std::uint32_t c = 0; c < 4; ++c)
+            next.push_back(ElementId(mesh[id].first_child.index() + c));
+    }
+    open_ = std::move(next);
+    return !open_.empty();
+}
+
+void IndirectLight::know(VertexId v, std::span<const float> row, float deviation) {
+    if (known_[v.index()] || !radiosity_.exposed[v.index()]) return;
+    known_[v.index()] = 1;
+    std::copy(row.begin(), row.end(), irradiance[v].begin());
+    variance[v.index()] = deviation * deviation;
+}
+
+bool IndirectLight::gather_corners(const std::vector<ElementId>& elements) {
+    const Mesh& mesh = radiosity_.mesh;
+    const std::size_t stride = radiosity_.columns.stride;
+    const Receivers& all = radiosity_.receivers;
+    std::vector<char> listed(known_.size(), 0);
+    for (std::size_t at = 0; at < elements.size();) {
+        Receivers receivers;
+        std::vector<VertexId> fresh;
+        std::vector<std::uint32_t> rays;
+        std::vector<float> deviation;
+        for (; at < elements.size() && fresh.size() < batch_size; ++at) {
+            const Element& element = mesh[elements[at]];
+            for (const VertexId v : element.corners()) {
+                if (known_[v.index()] || listed[v.index()] || !radiosity_.exposed[v.index()])
+                    continue;
+                listed[v.index()] = 1;
+                receivers.add(Vec3(all.point(v.index())), Vec3(all.normal(v.index())),
+                              all.key[v.index()]);
+                fresh.push_back(v);
+                rays.push_back(rays_for(element));
+                deviation.push_back(source_.deviation(element.patch, rays.back()));
+            }
+        }
+        Received received;
+        received.reset(receivers.size(), stride);
+        std::vector<Surroundings> around(receivers.size());
+        rays_ += source_.gather(receivers, rays, received, around);
+        for (std::size_t i = 0; i < fresh.size(); ++i)
+            know(fresh[i], received.row(i, stride), deviation[i]);
+        if (options_.interrupted && options_.interrupted()) return false;
+    }
+    return true;
+}
+
+// A leaf that may not be divided needs no test.
+bool IndirectLight::worth_testing(const Element& element) const {
+    if (!element.leaf()) return true;
+    return options_.adaptive && element.area > options_.min_area && element.level < Mesh::max_level;
+}
+
+// The centre of a quad, the middle of the longest side of a triangle, which two triangles share
+// where a quad was cut.
+IndirectLight::Test IndirectLight::test_of(const Element& element) const {
+    const Mesh& mesh = radiosity_.mesh;
+    const auto middle = Mesh::midpoints(element);
+    std::uint32_t which = 4;
+    if (element.count == 3) {
+        const auto c = mesh.corners(element);
+        double longest = 0;
+        for (std::uint32_t i = 0; i < 3; ++i)
+            if (const double side = length(c[(i + 1) % 3] - c[i]); side > longest)
+                longest = side, which = i;
+    }
+    Test test;
+    test.place = middle.at[which];
+    const auto [u, v] = test.place;
+    test.point = mesh.sample_point(element, u, v);
+    test.normal = mesh.normal(mesh.face_of(element), u, v);
+    std::uint64_t key = 0x7e57;
+    if (element.count == 3) {
+        const VertexId a = element.vertices[which], b = element.vertices[(which + 1) % 3];
+        test.expected = 0.5f * (light(a) + light(b));
+        key = hash_bits(key, std::min(a, b).value, std::max(a, b).value);
+    } else {
+        for (const VertexId corner : element.corners()) test.expected += 0.25f * light(corner);
+        key = hash_bits(key, element.vertices[0].value, element.vertices[2].value);
+    }
+    test.key = static_cast<std::uint32_t>(key);
+    return test;
+}
+
+bool IndirectLight::fails(const Element& element, float expected, float found,
+                          float deviation) const {
+    float noise = 0;
+    for (const VertexId v : element.corners()) noise += variance[v.index()];
+    const auto corners = static_cast<float>(element.count);
+    noise = noise_deviations * std::sqrt(deviation * deviation + noise / (corners * corners));
+    return std::abs(found - expected) - noise > threshold * tolerance(element);
+}
+
+void IndirectLight::divide(const std::vector<ElementId>& elements) {
+    Mesh& mesh = radiosity_.mesh;
+    const std::size_t known = mesh.vertices().size();
+    std::vector<ElementId> divided;
+    for (const ElementId id : elements) {
+        if (!mesh[id].leaf() || !may_be_divided(mesh[id])) continue;
+        const auto done = mesh.split(id);
+        divided.insert(divided.end(), done.begin(), done.end());
+    }
+    radiosity_.admit_new_vertices();
+    make_room();
+    std::vector<char> lit(mesh.vertices().size() - known, 0);
+    for (const ElementId id : divided) {
+        const Element& whole = mesh[id];
+        for (std::size_t c = 0; c < 4; ++c) {
+            const ElementId child_id(whole.first_child.index() + c);
+            // What the whole has shot, its parts have shot.
+            std::copy_n(radiosity_.shot[id].data(), radiosity_.shot.stride(),
+                        radiosity_.shot[child_id].data());
+            const Element& child = mesh[child_id];
+            const auto places = corners_of(child);
+            for (std::uint32_t i = 0; i < child.count; ++i) {
+                const VertexId v = child.vertices[i];
+                if (v.index() < known || lit[v.index() - known]) continue;
+                lit[v.index() - known] = 1;
+                interpolate(whole, places[i], v);
+            }
+        }
+    }
+}
+
+void IndirectLight::finish() {
+    for (const ElementId id : closed_) interpolate_in(id);
+    for (const ElementId id : open_) interpolate_in(id);
+    if (options_.interrupted && options_.interrupted()) return;
+    // What dividing neighbours brought to elements without light at all corners.
+    std::vector<ElementId> rest;
+    for (const Patch& patch : radiosity_.mesh.patches())
+        radiosity_.mesh.for_leaves(patch.root, [&](ElementId id) { rest.push_back(id); });
+    gather_corners(rest);
+}
+
+// From those corners that are open to the room; where none is, nothing is known.
+void IndirectLight::interpolate(const Element& whole, const std::array<std::int32_t, 2>& place,
+                                VertexId to) {
+    auto weight = weights_at(whole, place[0], place[1]);
+    float sum = 0;
+    for (std::uint32_t c = 0; c < whole.count; ++c)
+        sum += weight[c] *= radiosity_.exposed[whole.vertices[c].index()] ? 1.0f : 0.0f;
+    if (!(sum > 0) || !radiosity_.exposed[to.index()]) return;
+    const auto row = irradiance[to];
+    std::fill(row.begin(), row.end(), 0.0f);
+    variance[to.index()] = 0;
+    for (std::uint32_t c = 0; c < whole.count; ++c) {
+        const float w = weight[c] / sum;
+        const auto corner = irradiance[whole.vertices[c]];
+        for (std::size_t k = 0; k < row.size(); ++k) row[k] += w * corner[k];
+        variance[to.index()] += w * w * variance[whole.vertices[c].index()];
+    }
+}
+
+void IndirectLight::interpolate_in(ElementId id) {
+    const Mesh& mesh = radiosity_.mesh;
+    const Element& whole = mesh[id];
+    if (whole.leaf()) return;
+    for (const VertexId v : whole.corners())
+        if (!known_[v.index()]) return;
+    mesh.for_leaves(id, [&](ElementId leaf) {
+        const Element& element = mesh[leaf];
+        const auto places = corners_of(element);
+        for (std::uint32_t i = 0; i < element.count; ++i) {
+            const VertexId v = element.vertices[i];
+            if (known_[v.index()] || !radiosity_.exposed[v.index()]) continue;
+            known_[v.index()] = 1;
+            interpolate(whole, places[i], v);
+        }
+    });
+}
+
+}  // namespace exitance

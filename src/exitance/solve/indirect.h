@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reflected light at the vertices: gathered where it bends, interpolated where that is shown to be
+// good enough.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "exitance/mesh/field.h"
+#include "exitance/solve/cast_light.h"
+#include "exitance/solve/radiosity.h"
+#include "exitance/solve/reflected_light.h"
+
+namespace exitance {
+
+struct IndirectOptions {
+    float tolerance = 0;   ///< irradiance (luminance) that may be wrong in an element of `area`
+    float area = 1;        ///< [m²]; smaller elements may be wrong by more
+    float min_area = 0;    ///< elements below this area stay [m²]
+    bool adaptive = true;  ///< elements may be divided
+    std::function<bool()> interrupted{};
+};
+
+/// Goes down the quadtrees level by level. An element in whose middle a gather finds what its
+/// corners say is smooth, and the vertices in it are interpolated; others go on with their
+/// children, and leaves are divided. Direct light, which makes most of the vertices, has nothing to
+/// say here.
+class IndirectLight {
+  public:
+    /// All vertices begin with the irradiance of their patches. All but the numbers outlives this.
+    IndirectLight(Radiosity& radiosity, ReflectedLight& source, const IndirectOptions& options);
+
+    /// One level; false when nothing is left to do. Vertices that elements gain are interpolated
+    /// until they are gathered.
+    bool step();
+
+    /// Interpolates whatever has not been gathered. Where interruption left corners without light
+    /// of their own, that of the patches stays.
+    void finish();
+
+    /// Vertices that the mesh has gained otherwise have the irradiance of their patches.
+    void admit_new_vertices();
+
+    /// What may be wrong, once there is a first solution to tell it by.
+    void set_tolerance(float tolerance, float min_area);
+
+    VertexField irradiance;       ///< per vertex
+    std::vector<float> variance;  ///< per vertex: of its luminance
+    std::uint64_t rays() const { return rays_; }
+    std::size_t elements_left() const { return open_.size(); }
+
+  private:
+    /// A place in the middle of an element that tells whether it is smooth.
+    struct Test {
+        Vec3 point, normal;
+        std::uint32_t key = 0;
+        std::array<std::int32_t, 2> place;
+        float expected = 0;
+    };
+    void spread_patches(std::size_t first);
+    void make_room();
+    void know(VertexId v, std::span<const float> row, float deviation);
+    bool gather_corners(const std::vector<ElementId>& elements);
+    bool worth_testing(const Element& element) const;
+    Test test_of(const Element& element) const;
+    bool fails(const Element& element, float expected, float found, float deviation) const;
+    void divide(const std::vector<ElementId>& elements);
+    void interpolate(const Element& whole, const std::array<std::int32_t, 2>& place, VertexId to);
+    void interpolate_in(ElementId id);
+    float light(VertexId v) const;
+    float tolerance(const Element& element) const;
+    std::uint32_t rays_for(const Element& element) const;
+    bool may_be_divided(const Element& element) const;
+
+    Radiosity& radiosity_;
+    ReflectedLight& source_;
+    IndirectOptions options_;
+    std::vector<ElementId> open_;    ///< to be looked at; their corners have light
+    std::vector<ElementId> closed_;  ///< smooth
+    std::vector<char> known_;        ///< per vertex: gathered
+    std::uint64_t rays_ = 0;
+};
+
+}  // namespace exitance
