@@ -94,7 +94,8 @@ void take_snapshot(const Snapshots& snapshots, const Radiosity& radiosity, const
 Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
                         const Radiosity& radiosity, const Shooting* solver) {
     if (!snapshots.take || (!snapshots.every && !snapshots.wanted)) return observe;
-    return [&, next = snapshots.every](const Progress& progress) mutable {
+    return [&observe, &snapshots, &radiosity, solver,
+            next = snapshots.every](const Progress& progress) mutable {
         if (observe) observe(progress);
         const bool due = next && progress.shots >= *next;
         if (due) next = progress.shots + *snapshots.every;
