@@ -28,13 +28,16 @@ export class LightMix extends EventTarget {
     this.shown = this.wanted()
   }
 
+  /** Brightness of each group, 0 for what is muted or not among the soloed. */
+  brightness(): number[] {
+    const anySolo = this.groups.some((g) => g.solo)
+    return this.groups.map((g) => (!g.mute && (!anySolo || g.solo) ? g.weight : 0))
+  }
+
   /** Factors that the states ask for, three per group. */
   private wanted(): number[] {
-    const anySolo = this.groups.some((g) => g.solo)
-    return this.groups.flatMap((g) => {
-      const on = !g.mute && (!anySolo || g.solo)
-      return linearOfHex(g.colour).map((c) => (on ? g.weight * c : 0))
-    })
+    const brightness = this.brightness()
+    return this.groups.flatMap((g, i) => linearOfHex(g.colour).map((c) => brightness[i] * c))
   }
 
   /** Factors to show now; while a cross-fade runs they move. */

@@ -11,12 +11,13 @@ function download(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000)
 }
 
-/** The address of this page with where one stands, and the brightness of the lights. */
+/** The address of this page with where one stands, and the brightness and colour of the lights. */
 export function linkHere(viewer: Viewer): string {
   const { eye, look_at, fov } = viewer.place()
   const numbers = (values: number[]) => values.map((v) => Number(v.toFixed(4))).join(',')
   const here = new URLSearchParams({ eye: numbers(eye), at: numbers(look_at), fov: String(Number(fov.toFixed(2))),
-    mode: viewer.movement.mode, light: numbers(viewer.mix.groups.map((g) => (g.mute ? 0 : g.weight))) })
+    mode: viewer.movement.mode, light: numbers(viewer.mix.brightness()),
+    colour: viewer.mix.groups.map((g) => g.colour.slice(1)).join(',') })
   return `${location.href.split('#')[0]}#${here.toString().replaceAll('%2C', ',')}`
 }
 
@@ -27,6 +28,9 @@ export function followLink(viewer: Viewer, hash: string): boolean {
   const [eye, at, fov, light] = [numbers('eye'), numbers('at'), Number(here.get('fov')), numbers('light')]
   if (light.length === viewer.mix.groups.length && light.every((w) => Number.isFinite(w) && w >= 0) && here.has('light'))
     light.forEach((weight, g) => viewer.mix.set(g, { weight }))
+  const colours = (here.get('colour') ?? '').split(',')
+  if (colours.length === viewer.mix.groups.length && colours.every((c) => /^[0-9a-f]{6}$/.test(c)))
+    colours.forEach((c, g) => viewer.mix.set(g, { colour: `#${c}` }))
   if (here.get('mode') === 'walk') viewer.movement.setMode('walk')
   const valid = [...eye, ...at, fov].every(Number.isFinite) && eye.length === 3 && at.length === 3 && fov > 1 && fov < 179
   if (valid) viewer.movement.pose = viewer.poseAt(eye, at, fov)
