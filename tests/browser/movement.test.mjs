@@ -223,8 +223,9 @@ describe('a headset', () => {
     const { head } = await state()
     assert.ok(head[0] > 0 && head[0] < 4 && head[2] < 0 && head[2] > -3, `walls stop: ${head}`)
 
-    await page.evaluate(() => (window.headset.sources = [{ handedness: 'right', gamepad: { axes: [0, 0, 1, 0] } }]))
+    await page.evaluate(() => (window.headset.sources = []))
     const facing = await state()
+    await page.evaluate(() => (window.headset.sources = [{ handedness: 'right', gamepad: { axes: [0, 0, 1, 0] } }]))
     await page.waitForFunction((t) => Math.abs(window.exitance.viewer.stage.rig.rotation.y - t) > 0.1, facing.turn)
     await page.waitForTimeout(200)
     near((await state()).turn - facing.turn, -Math.PI / 6, 1e-6, 'once, by 30 degrees')
