@@ -14,16 +14,6 @@ namespace {
 
 constexpr std::size_t most_points = 20000;
 
-std::vector<GatherPoint> points_of(const SensorGrid& grid) {
-    std::vector<GatherPoint> out;
-    for (std::uint32_t j = 0; j < grid.rows; ++j)
-        for (std::uint32_t i = 0; i < grid.columns; ++i)
-            out.push_back({grid.origin + grid.u * ((i + 0.5) / grid.columns) +
-                               grid.v * ((j + 0.5) / grid.rows),
-                           normalized(grid.normal)});
-    return out;
-}
-
 /// Irradiance, points × columns: read off surfaces, gathered where there is none.
 std::vector<double> readings(const Solution& solution, const std::vector<GatherPoint>& points) {
     std::vector<double> E = probe(solution, points);
@@ -52,7 +42,7 @@ std::string grid_readings(const Solution& solution) {
             out.push_back(nullptr);
             continue;
         }
-        const std::vector<double> E = readings(solution, points_of(grid));
+        const std::vector<double> E = readings(solution, sensor_points(grid));
         nlohmann::json values = nlohmann::json::array();
         for (std::size_t at = 0; at < E.size(); at += bands) {
             double mean = 0;

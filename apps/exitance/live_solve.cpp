@@ -38,7 +38,6 @@ std::string told(const Progress& progress, bool paused) {
 Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer& server,
                     const std::filesystem::path& file, const Observer& observe,
                     const Cancel& interrupt, bool keep, const Snapshots& snapshots) {
-    constexpr double patience = 3;  // seconds in which a page that was reloaded is back
     Cancel cancel;
     std::atomic<bool> paused = false;
     server.on_command([&](ViewCommand command) {
@@ -46,7 +45,7 @@ Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer&
         if (command == ViewCommand::stop) cancel.request();
     });
     const auto look_around = [&] {
-        if (interrupt.requested() || (!keep && server.deserted(patience))) cancel.request();
+        if (interrupt.requested() || (!keep && server.deserted())) cancel.request();
     };
     Pace pace;
     Stopwatch since_told;

@@ -13,18 +13,18 @@
 namespace exitance::cli {
 
 void require_output(const std::filesystem::path& output, const std::filesystem::path& input,
-                    const std::vector<std::string>& endings) {
+                    const std::vector<std::string>& endings, const std::string& option) {
     std::error_code absent;
     const bool device = std::filesystem::is_other(output, absent);
     const std::string ending = lower_extension(output);
     if (!device && !endings.empty() &&
         std::find(endings.begin(), endings.end(), ending) == endings.end())
-        throw Error(Fault::wrong_use, fmt::format("--output: '{}' is not allowed, expected a name "
-                                                  "that ends in {}",
-                                                  output.string(), fmt::join(endings, " or ")));
+        throw Error(Fault::wrong_use,
+                    fmt::format("{}: '{}' is not allowed, expected a name that ends in {}", option,
+                                output.string(), fmt::join(endings, " or ")));
     if (std::filesystem::equivalent(output, input, absent))
         throw Error(Fault::wrong_use,
-                    fmt::format("--output: '{}' would replace the input", output.string()));
+                    fmt::format("{}: '{}' would replace the input", option, output.string()));
     check_writable(output);
 }
 

@@ -14,6 +14,7 @@
 #include "csv_cells.h"
 #include "exitance/run/error.h"
 #include "exitance/scene/formats/limits.h"
+#include "exitance/solution/probe.h"
 
 namespace exitance::cli {
 
@@ -94,14 +95,12 @@ PointTable points_of(const SensorGrid& grid) {
     PointTable table;
     table.header = fmt::format("{}", fmt::join(names, ","));
     const Vec3& n = grid.normal;
-    for (std::uint32_t j = 0; j < grid.rows; ++j)
-        for (std::uint32_t i = 0; i < grid.columns; ++i) {
-            const Vec3 p = grid.origin + grid.u * ((i + 0.5) / grid.columns) +
-                           grid.v * ((j + 0.5) / grid.rows);
-            table.points.push_back({p, normalized(n)});
-            table.lines.push_back(fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", p.x, p.y,
-                                              p.z, n.x, n.y, n.z));
-        }
+    table.points = sensor_points(grid);
+    for (const GatherPoint& point : table.points) {
+        const Vec3& p = point.position;
+        table.lines.push_back(
+            fmt::format("{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g}", p.x, p.y, p.z, n.x, n.y, n.z));
+    }
     return table;
 }
 

@@ -23,7 +23,7 @@ struct PointTable {
 /// Error(bad_input) with name:line:column.
 PointTable read_points(std::istream& in, const std::string& name);
 
-/// The sensors of a grid, row by row: origin + (i + ½)/columns · u + (j + ½)/rows · v.
+/// The sensors of a grid as a table.
 PointTable points_of(const SensorGrid& grid);
 
 /// The lines of `table` with `columns.size()` values per point appended, NaN as "nan".

@@ -54,11 +54,7 @@ class ProradCommand {
 #ifdef EXITANCE_VIEWER
         command.add_flag("-s", show_, "show while solving: a walk through it in the browser")
             ->excludes(pictures);
-        command
-            .add_flag_callback(
-                "--no-open", [this] { walking_.open = false; },
-                "with -s: open no browser, the address is printed")
-            ->needs("-s");
+        walking_.add_no_open(command, "-s");
 #endif
         reporting_.add_to(command);
         command.footer(

@@ -37,9 +37,7 @@ class RadviewCommand {
             ->excludes(down)
             ->excludes("up-axis");
         down->excludes("up-axis");
-        command.add_flag_callback(
-            "--no-open", [this] { walking_.open = false; },
-            "open no browser: the address is printed");
+        walking_.add_no_open(command);
         reporting_.add_to(command);
         command.footer(
             "The page and its keys are those of exitance view. F1, F2: help; drag, arrows: "

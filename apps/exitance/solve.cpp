@@ -50,11 +50,7 @@ class SolveCommand {
             .add_flag("--view", view_,
                       "show the solution in the browser while it grows, as exitance view does")
             ->excludes("--compare");
-        command
-            .add_flag_callback(
-                "--no-open", [this] { walking_.open = false; },
-                "with --view: open no browser, the address is printed")
-            ->needs("--view");
+        walking_.add_no_open(command, "--view");
 #endif
         reporting_.add_to(command);
         command.footer(

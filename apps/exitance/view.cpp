@@ -58,11 +58,7 @@ class ViewCommandLine {
             throw Error(Fault::wrong_use, "--output: '" + input_.string() +
                                               "' is a solution already, expected a scene");
         if (output_) require_output(*output_, input_, {".glb"});
-        if (html_ && html_->extension() != ".html")
-            throw Error(Fault::wrong_use,
-                        "--html: '" + html_->string() +
-                            "' is not allowed, expected a name that ends in .html");
-        if (html_) require_output(*html_, input_, {".html"});
+        if (html_) require_output(*html_, input_, {".html"}, "--html");
         if (solved) {
             read_solution(input_);  // says what is wrong with it
             given_.apply({});

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_server.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <httplib.h>
-#include <sys/stat.h>
-#include <unistd.h>
+#include <sys/socket.h>
 
 #include <array>
 #include <atomic>
-#include <cerrno>
 #include <charconv>
 #include <condition_variable>
-#include <cstring>
 #include <deque>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -26,6 +22,7 @@
 #include "exitance/run/progress.h"
 #include "exitance/solution/file.h"
 #include "grid_readings.h"
+#include "open_file.h"
 #include "viewer_assets.h"
 
 namespace exitance::cli {
@@ -59,50 +56,12 @@ bool same_text(const std::string& a, const std::string& b) {
     return difference == 0;
 }
 
-/// A file that stays readable when its name is gone.
-class OpenFile {
-  public:
-    explicit OpenFile(const std::filesystem::path& path)
-        : descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
-        struct stat facts {};
-        if (descriptor_ < 0 || ::fstat(descriptor_, &facts) != 0)
-            throw Error(Fault::could_not_finish,
-                        "cannot read " + path.string() + ": " + std::strerror(errno));
-        size_ = static_cast<std::size_t>(facts.st_size);
-    }
-    ~OpenFile() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-    OpenFile(const OpenFile&) = delete;
-    OpenFile& operator=(const OpenFile&) = delete;
-
-    std::size_t size() const { return size_; }
-    /// All of it.
-    std::vector<char> content() const {
-        std::vector<char> out(size_);
-        std::size_t at = 0;
-        while (at < size_) {
-            const ssize_t got =
-                ::pread(descriptor_, out.data() + at, size_ - at, static_cast<off_t>(at));
-            if (got <= 0) throw Error(Fault::could_not_finish, "cannot read the solution");
-            at += static_cast<std::size_t>(got);
-        }
-        return out;
-    }
-    /// Leads to the file even when its own name is gone.
-    std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
-    /// Sends some bytes from `offset` on, at most `length`; false if there are none.
-    bool send(std::size_t offset, std::size_t length, httplib::DataSink& sink) const {
-        std::vector<char> block(std::min<std::size_t>(length, 1u << 18));
-        const ssize_t got =
-            ::pread(descriptor_, block.data(), block.size(), static_cast<off_t>(offset));
-        return got > 0 && sink.write(block.data(), static_cast<std::size_t>(got));
-    }
-
-  private:
-    int descriptor_;
-    std::size_t size_ = 0;
-};
+/// Sends some bytes from `offset` on, at most `length`; false if there are none.
+bool send(const OpenFile& file, std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+    std::vector<char> block(std::min<std::size_t>(length, 1u << 18));
+    const std::size_t got = file.read(offset, block);
+    return got > 0 && sink.write(block.data(), got);
+}
 
 }  // namespace
 
@@ -195,7 +154,7 @@ void ViewServer::State::serve_solution() {
         response.set_content_provider(
             solution->size(), "model/gltf-binary",
             [file = solution](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-                return file->send(offset, length, sink);
+                return send(*file, offset, length, sink);
             });
     });
 }
@@ -404,10 +363,11 @@ void ViewServer::on_command(std::function<void(ViewCommand)> heard) {
     state_->heard = std::move(heard);
 }
 
-bool ViewServer::deserted(double seconds) const {
+bool ViewServer::deserted() const {
+    constexpr double patience = 3;  // seconds in which a page that was reloaded is back
     const std::lock_guard lock(state_->mutex);
     return state_->pages == 0 && state_->deserted_since &&
-           state_->deserted_since->seconds() > seconds;
+           state_->deserted_since->seconds() > patience;
 }
 
 bool ViewServer::has_pages() const {

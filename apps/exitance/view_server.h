@@ -36,8 +36,8 @@ class ViewServer {
     /// Called from a thread of the server.
     void on_command(std::function<void(ViewCommand)> heard);
 
-    /// Whether a page was open and for `seconds` none has been.
-    bool deserted(double seconds) const;
+    /// Whether a page was open and for some seconds none has been.
+    bool deserted() const;
     bool has_pages() const;
 
   private:

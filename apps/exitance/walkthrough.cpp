@@ -42,12 +42,17 @@ void WalkthroughOptions::add_to(CLI::App& command, CLI::Option* excluded) {
         ->check(CLI::Range(0, 65535).description(""))
         ->default_str("0")
         ->excludes(excluded);
-    command
-        .add_flag_callback(
-            "--no-open", [this] { open = false; }, "open no browser: the address is printed")
-        ->excludes(excluded);
+    add_no_open(command)->excludes(excluded);
     command.add_flag("--keep", keep, "stay when the last page closes, until Ctrl-C")
         ->excludes(excluded);
+}
+
+CLI::Option* WalkthroughOptions::add_no_open(CLI::App& command, const std::string& with) {
+    CLI::Option* option = command.add_flag_callback(
+        "--no-open", [this] { open = false; },
+        with.empty() ? "open no browser: the address is printed"
+                     : "with " + with + ": open no browser, the address is printed");
+    return with.empty() ? option : option->needs(command.get_option(with));
 }
 
 Walkthrough::Walkthrough(const WalkthroughOptions& options, const Reporting& reporting,
@@ -73,8 +78,7 @@ Solution Walkthrough::light(const Scene& scene, const SolveOptions& solving,
 }
 
 void Walkthrough::stay(const Cancel& interrupt) const {
-    constexpr double patience = 3;  // seconds in which a page that was reloaded is back
-    while (!interrupt.requested() && (options_.keep || !server_.deserted(patience)))
+    while (!interrupt.requested() && (options_.keep || !server_.deserted()))
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
 }
 

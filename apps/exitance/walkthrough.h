@@ -29,6 +29,8 @@ struct WalkthroughOptions {
 
     /// Adds --port, --no-open and --keep to `command`; the targets are this object's.
     void add_to(CLI::App& command, CLI::Option* excluded);
+    /// Adds --no-open alone, which makes sense with the option `with`, if that is not empty.
+    CLI::Option* add_no_open(CLI::App& command, const std::string& with = "");
 };
 
 class Walkthrough {
@@ -39,9 +41,8 @@ class Walkthrough {
                 const std::optional<std::filesystem::path>& solution = {});
 
     /// Lights `scene` while pages watch, as solve_live() does.
-    Solution light(const Scene& scene, const SolveOptions& solving,
-                   const std::filesystem::path& file, const Cancel& interrupt,
-                   const Snapshots& snapshots);
+    Solution light(const Scene& scene, const SolveOptions& solving, const std::filesystem::path& file,
+              const Cancel& interrupt, const Snapshots& snapshots);
 
     /// Returns when the last page has closed, unless they are to stay, or on `interrupt`.
     void stay(const Cancel& interrupt) const;

@@ -34,8 +34,29 @@ export function prepare(...names) {
   })
 }
 
+const polygon = (name, material, corners) => `[[polygon]]\nname = "${name}"\nmaterial = "${material}"\ncorners = ${JSON.stringify(corners)}\n`
+
+/** The sides of a box between two corners, seen from outside; or those of a room. */
+function box(name, material, [x, y, z], [X, Y, Z], isRoom = false) {
+  const sides = { east: [[X, y, Z], [X, y, z], [X, Y, z], [X, Y, Z]], west: [[x, y, z], [x, y, Z], [x, Y, Z], [x, Y, z]],
+    top: [[x, Y, Z], [X, Y, Z], [X, Y, z], [x, Y, z]], bottom: [[x, y, z], [X, y, z], [X, y, Z], [x, y, Z]],
+    south: [[x, y, Z], [X, y, Z], [X, Y, Z], [x, Y, Z]], north: [[X, y, z], [x, y, z], [x, Y, z], [X, Y, z]] }
+  return Object.entries(sides).map(([side, corners]) => polygon(`${name} ${side}`, material, isRoom ? corners.reverse() : corners)).join('')
+}
+const lampAt = (name, material, x, y, z, size) =>
+  polygon(name, material, [[x, y, z], [x + size, y, z], [x + size, y, z + size], [x, y, z + size]])
+
 /** A room with two lamps in groups of their own and a scene that dims them, photometric. */
 function writeTwoLamps() {
+  const grid = (name, height) => `[[grid]]
+name = "${name}"
+origin = [0.5, ${height}, -0.5]
+u = [3, 0, 0]
+v = [0, 0, -2]
+columns = 3
+rows = 2
+normal = [0, 1, 0]
+`
   writeFileSync(glb('room.toml'), `title = "Two lamps"
 quantity = "photometric"
 [[scenes]]
@@ -53,23 +74,7 @@ group = "left"
 name = "right lamp"
 exitance = [2000, 1000, 500]
 group = "right"
-[[grid]]
-name = "work"
-origin = [0.5, 0.8, -0.5]
-u = [3, 0, 0]
-v = [0, 0, -2]
-columns = 3
-rows = 2
-normal = [0, 1, 0]
-[[grid]]
-name = "floor"
-origin = [0.5, 0, -0.5]
-u = [3, 0, 0]
-v = [0, 0, -2]
-columns = 3
-rows = 2
-normal = [0, 1, 0]
-[[camera]]
+${grid('work', 0.8)}${grid('floor', 0)}[[camera]]
 name = "door"
 eye = [0.3, 1.6, -0.3]
 look_at = [3, 1, -2]
@@ -77,12 +82,7 @@ look_at = [3, 1, -2]
 name = "window"
 eye = [3.5, 1.6, -2.5]
 look_at = [0, 0.5, 0]
-` + [['floor', 'wall', [[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]]], ['ceiling', 'wall', [[0, 0, 2.5], [0, 3, 2.5], [4, 3, 2.5], [4, 0, 2.5]]],
-    ['south', 'wall', [[0, 0, 0], [0, 0, 2.5], [4, 0, 2.5], [4, 0, 0]]], ['north', 'wall', [[0, 3, 0], [4, 3, 0], [4, 3, 2.5], [0, 3, 2.5]]],
-    ['west', 'wall', [[0, 0, 0], [0, 3, 0], [0, 3, 2.5], [0, 0, 2.5]]], ['east', 'wall', [[4, 0, 0], [4, 0, 2.5], [4, 3, 2.5], [4, 3, 0]]],
-    ['lamp 1', 'left lamp', [[0.8, 1.2, 2.4], [0.8, 1.8, 2.4], [1.4, 1.8, 2.4], [1.4, 1.2, 2.4]]],
-    ['lamp 2', 'right lamp', [[2.6, 1.2, 2.4], [2.6, 1.8, 2.4], [3.2, 1.8, 2.4], [3.2, 1.2, 2.4]]]]
-    .map(([name, material, corners]) => `[[polygon]]\nname = "${name}"\nmaterial = "${material}"\ncorners = ${JSON.stringify(corners.map(([x, y, z]) => [x, z, -y]))}\n`).join(''))
+${box('room', 'wall', [0, 0, -3], [4, 2.5, 0], true)}${lampAt('lamp 1', 'left lamp', 0.8, 2.4, -1.8, 0.6)}${lampAt('lamp 2', 'right lamp', 2.6, 2.4, -1.8, 0.6)}`)
 }
 
 /** Serves `file`, opens it, looks at the page, and at the end nothing may have gone wrong. */

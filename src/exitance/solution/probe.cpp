@@ -49,4 +49,14 @@ std::vector<double> probe(const Solution& solution, std::span<const GatherPoint>
     return out;
 }
 
+std::vector<GatherPoint> sensor_points(const SensorGrid& grid) {
+    std::vector<GatherPoint> out;
+    for (std::uint32_t j = 0; j < grid.rows; ++j)
+        for (std::uint32_t i = 0; i < grid.columns; ++i)
+            out.push_back({grid.origin + grid.u * ((i + 0.5) / grid.columns) +
+                               grid.v * ((j + 0.5) / grid.rows),
+                           normalized(grid.normal)});
+    return out;
+}
+
 }  // namespace exitance

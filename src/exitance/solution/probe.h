@@ -28,4 +28,7 @@ Options describe(ProbeOptions& options);
 std::vector<double> probe(const Solution& solution, std::span<const GatherPoint> points,
                           const ProbeOptions& options = {});
 
+/// The sensors of a grid, row by row: origin + (i + ½)/columns · u + (j + ½)/rows · v.
+std::vector<GatherPoint> sensor_points(const SensorGrid& grid);
+
 }  // namespace exitance
