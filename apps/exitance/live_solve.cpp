@@ -35,9 +35,9 @@ std::string told(const Progress& progress, bool paused) {
 
 }  // namespace
 
-Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer& server,
-                    const std::filesystem::path& file, const Observer& observe,
-                    const Cancel& interrupt, bool keep, const Snapshots& snapshots) {
+Lit solve_live(const Scene& scene, const SolveOptions& options, ViewServer& server,
+               const std::filesystem::path& file, const Observer& observe, const Cancel& interrupt,
+               bool keep, const Snapshots& snapshots) {
     Cancel cancel;
     std::atomic<bool> paused = false;
     server.on_command([&](ViewCommand command) {
@@ -80,7 +80,7 @@ Solution solve_live(const Scene& scene, const SolveOptions& options, ViewServer&
     done.phase = "done", done.fraction_left = 0;
     if (solution.error) done.error = solution.error->rms;
     server.tell_progress(told(done, false));
-    return solution;
+    return {std::move(solution), cancel.requested()};
 }
 
 }  // namespace exitance::cli

@@ -89,11 +89,11 @@ class ProradCommand {
             latest = std::move(so_far);
         };
         apply(display);
-        const auto finish = [&](const Solution& solution) {
+        const auto finish = [&](const Solution& solution, bool stopped) {
             draw(*latest, display, picture);
             if (output_) write_solution(solution, *output_);
             if (reporting_.quiet) return;
-            if (interrupt.cancel().requested()) std::puts(stopped_early);
+            if (stopped) std::puts(stopped_early);
             std::fputs(summary(solution, output_.value_or(picture), watch.seconds()).c_str(),
                        stdout);
             std::fflush(stdout);
@@ -103,8 +103,9 @@ class ProradCommand {
             walking_.solve_to_end = true;
             const TemporaryFolder folder;
             Walkthrough walk(walking_, reporting_);
-            finish(walk.light(scene, options_, folder.path() / "solution.glb", interrupt.cancel(),
-                              snapshots));
+            const Lit lit = walk.light(scene, options_, folder.path() / "solution.glb",
+                                       interrupt.cancel(), snapshots);
+            finish(lit.solution, lit.stopped);
             walk.stay_if_watched(interrupt.cancel());
             return;
         }
@@ -112,7 +113,7 @@ class ProradCommand {
         const Solution solution =
             light(scene, options_, make_observer(reporting_), &interrupt.cancel(), snapshots);
         clear_bar(reporting_);
-        finish(solution);
+        finish(solution, interrupt.cancel().requested());
     }
 
   private:

@@ -27,7 +27,13 @@ class RadviewCommand {
             ->required();
         command.add_option("up-axis", axis_, "which points up: y, -y, z or -z")
             ->type_name("axis")
-            ->check(CLI::IsMember({"y", "z"}).description(""))
+            ->check(CLI::Validator(
+                [](const std::string& given) {
+                    return given == "y" || given == "z"
+                               ? ""
+                               : "found '" + given + "', expected y, -y, z or -z";
+                },
+                ""))
             ->default_str("as the file says");
         CLI::Option* down = command.add_flag_callback(
             "-y", [this] { axis_ = "-y"; }, "-y is up");
@@ -64,7 +70,7 @@ class RadviewCommand {
             return;
         }
         Scene scene = read_scene(input_);
-        if (!reporting_.quiet) print_findings(scene);
+        if (!reporting_.quiet) print_findings(scene), print_lit_anew(input_);
         if (axis_) scene.up = up();
         SolveOptions options;
         apply_settings(scene.settings, describe(options));

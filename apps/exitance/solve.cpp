@@ -88,7 +88,7 @@ class SolveCommand {
             light(scene, options_, make_observer(reporting_), &interrupt.cancel());
         clear_bar(reporting_);
         if (output_) write_solution(solution, *output_);
-        report(solution, watch, interrupt.cancel());
+        report(solution, watch, interrupt.cancel().requested());
     }
 
   private:
@@ -101,11 +101,11 @@ class SolveCommand {
     bool compare_ = false;
     Reporting reporting_;
 
-    void report(const Solution& solution, const Stopwatch& watch, const Cancel& interrupt) const {
+    void report(const Solution& solution, const Stopwatch& watch, bool stopped) const {
         if (reporting_.quiet) return;
         // A table on stdout stays one.
         std::FILE* said = reporting_.log == "csv" ? stderr : stdout;
-        if (interrupt.requested()) fmt::print(said, "{}\n", stopped_early);
+        if (stopped) fmt::print(said, "{}\n", stopped_early);
         fmt::print(said, "{}", summary(solution, output_.value_or("not written"), watch.seconds()));
     }
 
@@ -120,8 +120,8 @@ class SolveCommand {
         walking_.solve_to_end = true;
         Walkthrough walk(walking_, reporting_);
         const Stopwatch watch;
-        report(walk.light(scene, options_, *output_, interrupt, {.ambient = true}), watch,
-               interrupt);
+        const Lit lit = walk.light(scene, options_, *output_, interrupt, {.ambient = true});
+        report(lit.solution, watch, lit.stopped);
         std::fflush(stdout);
         walk.stay_if_watched(interrupt);
     }

@@ -63,6 +63,14 @@ void print_findings(const Scene& scene) {
     }
 }
 
+void print_lit_anew(const std::filesystem::path& scene) {
+    const std::string ending = lower_extension(scene);
+    if (ending != ".glb" && ending != ".gltf") return;
+    fmt::print(stderr,
+               "exitance: {} is a model, not a solution: it is lit anew, by its own lamps alone\n",
+               scene.string());
+}
+
 std::string error_text(const ErrorEstimate& error) {
     // Few points with most of the error tell little more than how large it may be.
     const std::string value =

@@ -17,6 +17,9 @@ inline constexpr const char* stopped_early = "stopped early; what is solved so f
 /// One line on stderr per thing that the readers took for granted, and per warning.
 void print_findings(const Scene& scene);
 
+/// A line on stderr where a scene's file might be taken for a solution.
+void print_lit_anew(const std::filesystem::path& scene);
+
 /// "1.8 % ± 0.2 % (…)", or how large it may be where the points do not tell more.
 std::string error_text(const ErrorEstimate& error);
 

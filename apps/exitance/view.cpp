@@ -65,7 +65,7 @@ class ViewCommandLine {
             html_ ? write_page(input_) : serve(nullptr);
         } else {
             const Scene scene = read_scene(input_, read_options_);
-            if (!reporting_.quiet) print_findings(scene);
+            if (!reporting_.quiet) print_findings(scene), print_lit_anew(input_);
             given_.apply(scene.settings);
             html_ ? write_page_of(scene) : serve(&scene);
         }
@@ -104,10 +104,13 @@ class ViewCommandLine {
         if (scene) {
             const Stopwatch watch;
             const std::filesystem::path file = output_.value_or(folder.path() / "solution.glb");
-            const Solution solution =
+            const Lit lit =
                 walk.light(*scene, options_, file, interrupt.cancel(), {.ambient = true});
-            if (output_ && !reporting_.quiet)
-                std::fputs(summary(solution, *output_, watch.seconds()).c_str(), stdout);
+            if (output_ && !reporting_.quiet) {
+                if (lit.stopped) std::puts(stopped_early);
+                std::fputs(summary(lit.solution, *output_, watch.seconds()).c_str(), stdout);
+                std::fflush(stdout);
+            }
         }
         walk.stay(interrupt.cancel());
     }

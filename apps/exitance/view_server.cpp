@@ -121,9 +121,19 @@ httplib::Server::HandlerResponse ViewServer::State::gate(const httplib::Request&
     if (!typed && site != "same-origin") return refuse(403, "requests of other sites are refused");
     if (request.method != "GET" && request.method != "HEAD" && request.method != "POST")
         return refuse(405, "expected GET, HEAD or POST");
-    if (request.path.size() < token.size() + 2 || request.path[token.size() + 1] != '/' ||
-        !same_text(request.path.substr(1, token.size()), token))
+    const std::string& path = request.path;
+    if (path.size() <= token.size() || !same_text(path.substr(1, token.size()), token))
         return refuse(404, "there is nothing here");
+    const bool asks = request.method != "POST";
+    if (asks && path.size() == token.size() + 1) {
+        response.set_redirect(path + "/", 308);  // names beside the page lie below the slash
+        return httplib::Server::HandlerResponse::Handled;
+    }
+    if (path[token.size() + 1] != '/') return refuse(404, "there is nothing here");
+    // What is longer than announced lengths may be is refused when it is read.
+    const std::string length = request.get_header_value("Content-Length");
+    if (request.has_header("Transfer-Encoding") || (asks && !length.empty() && length != "0"))
+        return refuse(413, "expected no body, or a short one of announced length");
     return httplib::Server::HandlerResponse::Unhandled;
 }
 
@@ -283,7 +293,8 @@ ViewServer::ViewServer(int port) : state_(std::make_unique<State>()) {
     State& s = *state_;
     s.server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
     s.server.set_payload_max_length(most_body);
-    s.server.set_keep_alive_timeout(2);
+    // One request each: what is left of a refused one is nobody's next.
+    s.server.set_keep_alive_max_count(1);
     s.server.set_tcp_nodelay(true);
     // Two programs never share a port.
     s.server.set_socket_options([](int socket) {

@@ -11,8 +11,6 @@
 #include <cstdio>
 #include <thread>
 
-#include "live_solve.h"
-
 namespace exitance::cli {
 
 namespace {
@@ -68,13 +66,13 @@ Walkthrough::Walkthrough(const WalkthroughOptions& options, const Reporting& rep
         fmt::print(stderr, "exitance: no browser could be opened; open this address in one\n");
 }
 
-Solution Walkthrough::light(const Scene& scene, const SolveOptions& solving,
-                            const std::filesystem::path& file, const Cancel& interrupt,
-                            const Snapshots& snapshots) {
-    Solution solution = solve_live(scene, solving, server_, file, make_observer(reporting_),
-                                   interrupt, options_.keep || options_.solve_to_end, snapshots);
+Lit Walkthrough::light(const Scene& scene, const SolveOptions& solving,
+                       const std::filesystem::path& file, const Cancel& interrupt,
+                       const Snapshots& snapshots) {
+    Lit lit = solve_live(scene, solving, server_, file, make_observer(reporting_), interrupt,
+                         options_.keep || options_.solve_to_end, snapshots);
     clear_bar(reporting_);
-    return solution;
+    return lit;
 }
 
 void Walkthrough::stay(const Cancel& interrupt) const {

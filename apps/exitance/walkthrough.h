@@ -11,6 +11,7 @@
 #include "exitance/run/progress.h"
 #include "exitance/scene/scene.h"
 #include "exitance/solve/options.h"
+#include "live_solve.h"
 #include "progress_bar.h"
 #include "view_server.h"
 
@@ -41,7 +42,7 @@ class Walkthrough {
                 const std::optional<std::filesystem::path>& solution = {});
 
     /// Lights `scene` while pages watch, as solve_live() does.
-    Solution light(const Scene& scene, const SolveOptions& solving, const std::filesystem::path& file,
+    Lit light(const Scene& scene, const SolveOptions& solving, const std::filesystem::path& file,
               const Cancel& interrupt, const Snapshots& snapshots);
 
     /// Returns when the last page has closed, unless they are to stay, or on `interrupt`.

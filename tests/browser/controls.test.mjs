@@ -103,6 +103,66 @@ describe('every control', () => {
   })
 })
 
+describe('numbers that cannot be', () => {
+  it('are not taken, and the user is told', () => visit('room.glb', async (page) => {
+    await page.click('#panel-save summary')
+    const given = async (id, text) => {
+      await page.fill(id, text)
+      await page.press(id, 'Enter')
+      const said = await page.evaluate(() => (document.getElementById('notice').hidden ? '' : document.getElementById('notice-text').textContent))
+      await page.evaluate(() => (document.getElementById('notice').hidden = true))
+      return [await page.inputValue(id), said]
+    }
+    for (const wrong of ['0', '-5', '20000', '1e9', '']) {
+      const [kept, said] = await given('#picture-width', wrong)
+      assert.equal(kept, '1920')
+      assert.match(said, /at least 16 and at most 16384; it stays 1920/)
+    }
+    assert.deepEqual(await given('#picture-width', '640.4'), ['640', ''])
+    const [step] = await given('#contour-step', '25')
+    assert.equal(step, '25')
+    for (const wrong of ['0', '-3', '']) {
+      const [kept, said] = await given('#contour-step', wrong)
+      assert.equal(kept, '25')
+      assert.match(said, /more than 0; it stays 25/)
+    }
+    await page.click('#contours')
+    assert.equal(await page.evaluate(() => window.exitance.viewer.contour), 25)
+    await page.selectOption('#look', 'illuminance')
+    const [low, high] = await page.evaluate(() => [window.exitance.viewer.range.low, window.exitance.viewer.range.high])
+    assert.match((await given('#range-low', String(high + 1)))[1], /less than/)
+    assert.match((await given('#range-high', '-1'))[1], /more than/)
+    assert.deepEqual(await page.evaluate(() => [window.exitance.viewer.range.low, window.exitance.viewer.range.high]), [low, high])
+  }))
+})
+
+describe('the program ends', () => {
+  it('and the page says so, goes on, and tells what it cannot have any more', async () => {
+    const server = await serve('room.glb'), { page, faults } = await open(browser, server.url)
+    await server.stop()
+    await page.waitForSelector('#notice:not([hidden])')
+    const said = () => page.textContent('#notice-text')
+    assert.match(await said(), /^The program has ended/)
+    await page.click('#notice-close')
+    assert.ok(!(await page.locator('#notice').isVisible()))
+    for (const [panel, control] of [['#panel-save', '#solution-file'], ['#panel-measure', '#grids-shown']]) {
+      await page.click(`${panel} summary`)
+      await page.click(control)
+      await page.waitForSelector('#notice:not([hidden])')
+      assert.match(await said(), /does not answer/)
+      await page.click('#notice-close')
+    }
+    assert.ok(!(await page.isChecked('#grids-shown')))
+    await page.click('#solo-0')
+    assert.ok(await reading(page, 450, 640), 'reads')
+    const [picture] = await Promise.all([page.waitForEvent('download'), page.click('#picture')])
+    assert.equal(readFileSync(await picture.path()).readUInt32BE(16), 1920)
+    // The browser itself notes on its console which requests found nobody.
+    assert.deepEqual(faults.filter((fault) => !/Failed to load resource|ERR_/.test(fault)), [])
+    await page.context().close()
+  })
+})
+
 describe('taking away', () => {
   it('a picture of any size, and the mix as a model', () => visit('cornell.glb', async (page) => {
     await page.click('#panel-save summary')
@@ -117,6 +177,22 @@ describe('taking away', () => {
     const [model] = await Promise.all([page.waitForEvent('download'), page.click('#export')])
     await model.saveAs(glb('mix.glb'))
     assert.match(run('info', 'mix.glb'), /triangles|polygons/)
+  }))
+
+  it('a picture larger than graphics cards draw is what a small one shows, in more pixels', () => visit('cornell.glb', async (page) => {
+    const apart = await page.evaluate(async () => {
+      const { viewer } = window.exitance
+      viewer.settle()
+      const pixels = async (width, height) => {
+        const context = new OffscreenCanvas(450, 350).getContext('2d', { willReadFrequently: true })
+        context.drawImage(await createImageBitmap(await viewer.picture(width, height)), 0, 0, 450, 350)
+        return context.getImageData(0, 0, 450, 350).data
+      }
+      const [small, large] = [await pixels(450, 350), await pixels(4500, 3500)]
+      return small.reduce((sum, v, i) => sum + Math.abs(v - large[i]), 0) / small.length
+    })
+    assert.ok(apart < 2, `${apart} levels of 255 apart: edges alone`)
+    assert.equal(await page.evaluate(() => window.exitance.viewer.stage.renderer.domElement.width), 900, 'the page is as it was')
   }))
 
   it('the solution itself', () => visit('room.glb', async (page) => {

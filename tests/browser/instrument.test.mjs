@@ -98,6 +98,40 @@ describe('the instrument', () => {
     const behind = await reading(page, 560, 560)
     assert.ok(behind.distance > front.distance || behind.surface !== front.surface)
   }))
+
+  it('a section cuts the lines of the mesh and the planes of sensors, too', () => visit('room.glb', async (page) => {
+    // From above, all of the room is cut away but its floor: nothing of the walls' lines may be left.
+    const drawn = () => page.evaluate(async () => {
+      const { viewer } = window.exitance
+      viewer.movement.pose = viewer.poseAt([2, 1.2, -0.1], [2, 1.2, -2], 60)
+      viewer.settle()
+      const copy = new OffscreenCanvas(200, 200).getContext('2d')
+      copy.drawImage(await createImageBitmap(await viewer.picture(200, 200)), 0, 0)
+      const { data } = copy.getImageData(0, 0, 200, 100), colours = new Set()
+      for (let i = 0; i < data.length; i += 4) colours.add(data.slice(i, i + 3).join())
+      return colours.size
+    })
+    await page.click('#wires')
+    assert.ok(await drawn() > 20, 'lines on the walls')
+    await page.selectOption('#section-axis', { label: 'cut from above' })
+    await page.locator('#section-at').evaluate((e) => {
+      e.value = 0.02
+      e.dispatchEvent(new Event('input'))
+    })
+    assert.equal(await drawn(), 1, 'the background alone')
+    await page.click('#panel-measure summary')
+    await page.click('#grids-shown')
+    await page.waitForFunction(() => window.exitance.grids.figures.length === 2)
+    const work = await page.evaluate(() => {
+      const { viewer } = window.exitance
+      viewer.movement.pose = viewer.poseAt([2, 2, -1.51], [2, 0, -1.5], 60)
+      const read = () => viewer.sensorAt(450, 350)?.grid
+      const cut = read()
+      viewer.setSection({ axis: -1 })
+      return [cut, read()]
+    })
+    assert.deepEqual(work, ['floor', 'work'])
+  }))
 })
 
 /** Means over a grid of six sensors by `exitance probe`. */
@@ -131,6 +165,40 @@ describe('measuring', () => {
     near(left[0].mean + right[0].mean, all[0].mean, 1e-3 * all[0].mean)
     assert.match(await page.textContent('#grid-figures'), /work/)
     assert.equal(await page.locator('#labels .point').count(), 12)
+  }))
+
+  it('a plane of sensors is what the pointer reads and the tape touches', () => visit('room.glb', async (page) => {
+    await page.click('#panel-measure summary')
+    await page.click('#grids-shown')
+    await page.waitForFunction(() => window.exitance.grids.figures.length === 2)
+    // Straight down from 1.2 m above the middle of the first sensor of the second row.
+    const seen = await page.evaluate(() => {
+      const { viewer } = window.exitance
+      viewer.movement.pose = viewer.poseAt([1, 2, -2], [1, 0, -2.0001], 60)
+      const { point, ...sensor } = viewer.sensorAt(450, 350)
+      return { ...sensor, point: point.toArray() }
+    })
+    assert.deepEqual([seen.grid, seen.column, seen.row], ['work', 1, 2])
+    // The planes lie off their places by 2 mm a metre of the room's diagonal.
+    near(seen.point[1], 0.8, 0.02)
+    near(seen.distance, 1.2, 0.02)
+    near(seen.shares[0] + seen.shares[1], 1, 1e-6)
+    const points = '1,0.8,-2,0,1,0\n'
+    writeFileSync(glb('sensor.csv'), `x,y,z,nx,ny,nz\n${points}`)
+    const [, values] = run('probe', 'room.glb', '--points', 'sensor.csv', '-o', '-', '--method', 'gather').trim().split('\n').map((l) => l.split(',').map(Number))
+    const lux = 0.2126 * values[6] + 0.7152 * values[7] + 0.0722 * values[8]
+    near(seen.illuminance, lux, 0.02 * lux, 'as probe gathers with other random rays')
+    await page.mouse.move(450, 350)
+    await page.waitForFunction(() => /^work/.test(document.getElementById('readout').textContent))
+    assert.match(await page.textContent('#readout'), /^worksensor 1, row 2Illuminance/)
+    near(parseFloat(await page.textContent('#read-irradiance')), seen.illuminance, 0.01 * seen.illuminance)
+    near(await page.evaluate(() => window.exitance.viewer.touchAt(450, 350).y), seen.point[1], 1e-6)
+    // Below the ceiling lamps nothing hides; from behind a surface the plane is not read.
+    assert.equal(await page.evaluate(() => {
+      const { viewer } = window.exitance
+      viewer.movement.pose = viewer.poseAt([1, 3.5, -2], [1, 0, -2.0001], 60)
+      return viewer.sensorAt(450, 350)?.grid
+    }), 'work', 'backs of surfaces hide nothing')
   }))
 
   it('the tape', () => visit('room.glb', async (page) => {

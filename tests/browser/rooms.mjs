@@ -20,6 +20,10 @@ const solvers = {
     writeTwoLamps()
     run('solve', 'room.toml', '-o', 'room.glb', '--error', '0.1', '--quiet')
   },
+  'hall.glb': () => {
+    writeHall()
+    run('solve', 'hall.toml', '-o', 'hall.glb', '--error', '0.5', '--quiet')
+  },
 }
 
 /** Solves them before the tests of a file. */
@@ -83,6 +87,19 @@ name = "window"
 eye = [3.5, 1.6, -2.5]
 look_at = [0, 0.5, 0]
 ${box('room', 'wall', [0, 0, -3], [4, 2.5, 0], true)}${lampAt('lamp 1', 'left lamp', 0.8, 2.4, -1.8, 0.6)}${lampAt('lamp 2', 'right lamp', 2.6, 2.4, -1.8, 0.6)}`)
+}
+
+/** A hall with things to walk against: a table, stairs, a low step and a chest. */
+function writeHall() {
+  const stairs = [1, 2, 3, 4].map((k) => box(`step ${k}`, 'wall', [3 + 0.28 * (k - 1), 0, 2.4], [7.99, 0.18 * k, 3.6])).join('')
+  writeFileSync(glb('hall.toml'), `[[material]]
+name = "wall"
+reflectance = 0.6
+[[material]]
+name = "lamp"
+exitance = 100
+${box('hall', 'wall', [0, 0, 0], [8, 3, 8], true)}${lampAt('lamp', 'lamp', 3, 2.9, 3, 2)}${stairs}${box('table', 'wall', [3, 0.72, 0.4], [4, 0.75, 1.6])}
+${box('low', 'wall', [3, 0, 4.4], [4, 0.3, 5.6])}${box('chest', 'wall', [6, 0, 4.4], [7, 0.4, 5.6])}`)
 }
 
 /** Serves `file`, opens it, looks at the page, and at the end nothing may have gone wrong. */

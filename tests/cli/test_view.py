@@ -116,6 +116,13 @@ class Served(Viewing):
                 self.assertNotIn("Access-Control-Allow-Origin", headers)
         self.assertEqual(self.ask("solution.glb")[2], (self.folder / "box.glb").read_bytes())
 
+    def test_the_address_without_its_last_slash_leads_to_the_one_with_it(self):
+        self.view("box.glb")
+        for method in ["GET", "HEAD"]:
+            status, headers, _ = self.ask_exactly(self.base[:-1], method)
+            self.assertEqual((status, headers["Location"]), (308, self.base))
+        self.assertEqual(self.ask_exactly(self.base[:-1], "POST", "{}")[0], 404)
+
     def test_page_names_no_other_place(self):
         self.view("box.glb")
         page = self.ask("")[2].decode()
@@ -189,7 +196,8 @@ class Refused(Viewing):
         self.view("box.glb")
         wrong = "0" * 32 if self.base != "/" + "0" * 32 + "/" else "1" * 32
         for path in ["/", "/solution.glb", "/index.html", f"/{wrong}/solution.glb",
-                     self.base[:-2] + "/solution.glb", self.base[:-1], "//" + self.base]:
+                     self.base[:-2] + "/solution.glb", self.base[:-2], self.base[:-1] + "x",
+                     "//" + self.base]:
             with self.subTest(path=path):
                 self.assertEqual(self.ask_exactly(path)[0], 404)
 
@@ -214,6 +222,41 @@ class Refused(Viewing):
         self.assertEqual(self.ask("x" * 10000)[0], 414)
         self.assertNotEqual(self.ask("", Cookie="x" * 20000)[0], 200)
         self.assertEqual(self.ask("")[0], 200, "and still serves its page")
+
+    def test_bodies_where_none_belongs_and_of_unannounced_length(self):
+        self.view("box.glb")
+        for method, path in [("GET", ""), ("HEAD", ""), ("POST", "command"), ("POST", "none")]:
+            for content in ["{}", "x" * 3000]:
+                with self.subTest(method=method, path=path, size=len(content)):
+                    self.assertEqual(self.answers(method, self.base + path, "Transfer-Encoding: "
+                                                  "chunked", f"{len(content):x}\r\n{content}\r\n"
+                                                  "0\r\n\r\n"), ["413"])
+                    if method != "POST":
+                        self.assertEqual(self.answers(method, self.base + path, "Content-Length: "
+                                                      f"{len(content)}", content), ["413"])
+        self.assertEqual(self.answers("GET", self.base, "Content-Length: 0", ""), ["200"])
+
+    def test_what_follows_a_refused_body_is_no_request(self):
+        """A request hidden in the body of another one is not answered."""
+        self.view("box.glb")
+        hidden = f"GET {self.base} HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n\r\n"
+        for method, path, status in [("GET", self.base, "413"), ("POST", "/", "404")]:
+            self.assertEqual(self.answers(method, path, f"Content-Length: {len(hidden)}", hidden),
+                             [status])
+
+    def answers(self, method, path, header, body):
+        """The status of every answer to what is sent at once."""
+        page = socket.create_connection(("127.0.0.1", self.port), timeout=20)
+        self.addCleanup(page.close)
+        page.sendall(f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1:{self.port}\r\n"
+                     f"{header}\r\n\r\n{body}".encode())
+        answers = b""
+        try:
+            while block := page.recv(65536):
+                answers += block
+        except ConnectionResetError:  # what was not read is thrown away
+            pass
+        return re.findall(r"^HTTP/1\.1 (\d+) ", answers.decode("latin-1"), re.MULTILINE)
 
     def test_a_body_that_is_announced_and_never_sent(self):
         self.view("box.glb")
@@ -372,6 +415,21 @@ class Live(Viewing):
         self.assertEqual((self.folder / "room.glb").read_bytes(),
                          (self.folder / "alone.glb").read_bytes(), whole.stdout)
 
+    def test_a_solve_that_a_page_stops_says_so(self):
+        self.write("room.geom", box(patches=8))
+        process = self.serve("solve", "room.geom", "-o", "room.glb", "--error", "0.003", "--view",
+                             "--no-open")
+        page = self.listen()
+        next(self.events(page))
+        self.assertEqual(self.ask("command", "POST", '{"command": "stop"}')[0], 204)
+        for event, data in self.events(page):
+            if event == "progress" and data["phase"] == "done":
+                break
+        page.close()
+        said, _ = process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 0)
+        self.assertIn("stopped early", said)
+
     def test_a_solve_that_nobody_can_watch_ends(self):
         """No browser, and nobody came."""
         done = self.run_program("solve", "box.geom", "-o", "again.glb", "--error", "0.3", "--view",
@@ -419,7 +477,7 @@ class Radview(Viewing):
         self.assertEqual(self.ask("solution.glb")[2], (self.folder / "box.glb").read_bytes())
 
     def test_refusals(self):
-        for message, *axis in [("up-axis", "x"), ("excludes", "y", "-z"), ("excludes", "-y", "-z")]:
+        for message, *axis in [("up-axis: found 'x', expected y, -y, z or -z", "x"), ("excludes", "y", "-z"), ("excludes", "-y", "-z")]:
             self.refuse(WRONG_USE, message, "radview", "box.glb", *axis, "--no-open")
         self.refuse(BAD_INPUT, "none.glb", "radview", "none.glb", "--no-open")
 
@@ -453,7 +511,16 @@ class WrongUse(Viewing):
                                ("a table", "--view", "--log", "csv", "-o", "new.glb"),
                                ("requires --view", "--no-open", "-o", "new.glb")]:
             self.refuse(WRONG_USE, message, "solve", "box.geom", *more)
-        self.refuse(WRONG_USE, "ends in .html", "view", "box.glb", "--html", "page.txt")
+        self.refuse(WRONG_USE, "--html: 'page.txt' is not allowed, expected a name that ends in .html",
+                    "view", "box.glb", "--html", "page.txt")
+
+    def test_a_model_that_is_no_solution_is_lit_anew(self):
+        """So is what a page exports with its light in the colours; a user may expect otherwise."""
+        self.succeed("convert", "box.geom", "model.glb")
+        done = self.succeed("view", "model.glb", "--html", "model.html", "--error", "0.3")
+        self.assertIn("model.glb is a model, not a solution", done.stderr)
+        self.assertNotIn("not a solution",
+                         self.succeed("view", "box.glb", "--html", "box.html").stderr)
 
 
 if __name__ == "__main__":

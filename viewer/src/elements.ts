@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Controls of the panel: each is an element, a name for those who cannot see it, and what it sets.
 
+import { notify } from './notice'
+import { general } from './numbers'
+
 type Attributes = Record<string, string | boolean | number | undefined>
 type Child = Node | string | null | undefined
 
@@ -56,11 +59,28 @@ export function choice<Value extends string>(name: string, id: string, values: [
   return out
 }
 
-export function numberField(name: string, id: string, value: number, does: (value: number) => void): HTMLInputElement {
+/** What a number must be; `above` and `below` are not allowed themselves. */
+export interface Limits { least?: number; most?: number; above?: number; below?: number; whole?: boolean }
+
+/** A field that always shows the number in use: what is given outside the limits is not taken, and the user is told
+ * why. `holds` is the number in use, `does` takes another. */
+export function numberField(name: string, id: string, holds: () => number, does: (value: number) => void,
+  limits: () => Limits = () => ({})): HTMLInputElement {
   const out = element('input', { type: 'number', id, 'aria-label': name, step: 'any' })
-  out.value = String(Number(value.toPrecision(4)))
+  const show = () => (out.value = String(Number(holds().toPrecision(4))))
+  show()
   out.addEventListener('change', () => {
-    if (Number.isFinite(out.valueAsNumber)) does(out.valueAsNumber)
+    const { least = -Infinity, most = Infinity, above = -Infinity, below = Infinity, whole } = limits()
+    const value = whole ? Math.round(out.valueAsNumber) : out.valueAsNumber
+    if (value >= least && value <= most && value > above && value < below) {
+      does(value)
+    } else {
+      const bounds = [[least, 'at least'], [above, 'more than'], [most, 'at most'], [below, 'less than']] as const
+      const expected = bounds.filter(([bound]) => Number.isFinite(bound)).map(([bound, words]) => `${words} ${general(bound)}`)
+      notify(`${name}: ${Number.isFinite(value) ? general(value) : 'that'} is not possible, expected ${expected.join(' and ') || 'a number'}; `
+        + `it stays ${general(holds())}.`)
+    }
+    show()
   })
   return out
 }

@@ -5,6 +5,7 @@
 import * as THREE from 'three'
 import { poseLooking } from './pose'
 import type { Viewer } from './viewer'
+import { bodyOf, walked } from './walker'
 
 const SNAP = Math.PI / 6, PUSHED = 0.7, RELEASED = 0.4, IDLE = 0.15
 
@@ -90,6 +91,10 @@ export class Headset {
   private get head(): THREE.Vector3 {
     return new THREE.Vector3().setFromMatrixPosition(this.tracked).applyMatrix4(this.rig.matrixWorld)
   }
+  /** Below the head, on the ground of the rig. */
+  private get feet(): THREE.Vector3 {
+    return this.head.setY(this.rig.position.y)
+  }
   private get sight(): THREE.Vector3 {
     return new THREE.Vector3(0, 0, -1).transformDirection(this.tracked).transformDirection(this.rig.matrixWorld)
   }
@@ -101,10 +106,8 @@ export class Headset {
     if (ahead.lengthSq() < 1e-6) return
     ahead.normalize()
     const way = ahead.clone().multiplyScalar(-y).addScaledVector(new THREE.Vector3(-ahead.z, 0, ahead.x), x)
-    const { feel, speed } = this.viewer.movement
-    const length = way.length() * speed * seconds
-    const free = feel(this.head, way.normalize())
-    this.rig.position.addScaledVector(way, Math.max(0, Math.min(length, (free ?? Infinity) - 0.25)))
+    const { obstacles, speed } = this.viewer.movement, { head, feet } = this
+    this.rig.position.add(walked(obstacles, feet, way.multiplyScalar(speed * seconds), bodyOf(head.y - feet.y, true)).sub(feet))
     this.rig.updateMatrixWorld(true)
   }
 
@@ -161,6 +164,7 @@ export class Headset {
     const head = this.head, ground = this.viewer.movement.feel(head, new THREE.Vector3(0, -1, 0))
     if (ground === undefined) return
     const gap = head.y - ground - this.rig.position.y
+    if (gap > bodyOf(head.y - this.rig.position.y, true).knees) return  // leant over a table, say
     this.rig.position.y += Math.sign(gap) * Math.min(Math.abs(gap), 3 * seconds)
   }
 }

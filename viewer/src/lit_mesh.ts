@@ -166,9 +166,10 @@ export class LitMesh extends THREE.Group {
     if (this.waiting) this.waiting.visible = which === 'unshot'
   }
 
-  showWires(shown: boolean): void {
+  /** Lines, but not beyond the planes of `cut`. */
+  showWires(shown: boolean, cut: THREE.Plane[]): void {
     if (shown && !this.wires) {
-      this.wires = meshLines(this.solution, this.geometry.getAttribute('position') as THREE.BufferAttribute)
+      this.wires = meshLines(this.solution, this.geometry.getAttribute('position') as THREE.BufferAttribute, cut)
       this.add(this.wires)
     }
     this.wiresShown = shown

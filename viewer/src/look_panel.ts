@@ -34,15 +34,21 @@ export function lookPanel(viewer: Viewer): HTMLElement {
     ['exitance', 'Exitance (false colour)'], ['normals', 'Normals'], ['reflectance', 'Reflectance'],
     ...(viewer.solution.unshot ? [['unshot', 'Unshot (false colour)'] as [Look, string]] : [])], viewer.look, (value) => viewer.setLook(value))
 
-  const low = numberField('Lowest value of the colours', 'range-low', 0, (v) => viewer.setRange(v, viewer.range.high))
-  const high = numberField('Highest value of the colours', 'range-high', 1, (v) => viewer.setRange(viewer.range.low, v))
+  const low = numberField('Lowest value of the colours', 'range-low', () => viewer.range.low,
+    (v) => viewer.setRange(v, viewer.range.high), () => ({ least: 0, below: viewer.range.high }))
+  const high = numberField('Highest value of the colours', 'range-high', () => viewer.range.high,
+    (v) => viewer.setRange(viewer.range.low, v), () => ({ above: viewer.range.low }))
   const range = row(low, element('span', { class: 'faint' }, 'to'), high,
     button('Fit', () => viewer.fitRange(), { id: 'range-fit', title: 'From 0 to what 99 % stay below' }))
 
-  const contours = check('Contours every', 'contours', false, (on) => viewer.setContour(on ? step.valueAsNumber : 0))
-  const step = numberField('Step of the contours', 'contour-step', 1, (v) => {
-    if (viewer.contour > 0 && v > 0) viewer.setContour(v)
-  })
+  // Till one is given, the step follows the range.
+  let given: number | undefined
+  const stepOf = () => given ?? Number(roundStep(viewer.range.high - viewer.range.low, 8).toPrecision(4))
+  const contours = check('Contours every', 'contours', viewer.contour > 0, (on) => viewer.setContour(on ? stepOf() : 0))
+  const step = numberField('Step of the contours', 'contour-step', () => viewer.contour || stepOf(), (v) => {
+    given = v
+    if (viewer.contour > 0) viewer.setContour(v)
+  }, () => ({ above: 0 }))
   const wires = check('Mesh by level', 'wires', viewer.wires, (on) => viewer.setWires(on))
   const levels = element('div', { id: 'levels', class: 'faint', 'aria-label': 'How often elements were halved' })
 
@@ -58,8 +64,8 @@ export function lookPanel(viewer: Viewer): HTMLElement {
     range.hidden = !viewer.inFalseColour
     low.value = String(Number(viewer.range.low.toPrecision(4)))
     high.value = String(Number(viewer.range.high.toPrecision(4)))
-    if (viewer.contour > 0) step.value = String(viewer.contour)
-    else step.value = String(Number(roundStep(viewer.range.high - viewer.range.low, 8).toPrecision(4)))
+    contours.querySelector('input')!.checked = viewer.contour > 0
+    step.value = String(Number((viewer.contour || stepOf()).toPrecision(4)))
     place.hidden = viewer.section.axis < 0
     levels.hidden = !viewer.wires
     levels.replaceChildren(...viewer.stage.mesh.levels.map((level) => {

@@ -13,6 +13,7 @@ import { lightPanel } from './light_panel'
 import { exposurePanel, lookPanel } from './look_panel'
 import { measurePanel } from './measure_panel'
 import type { Mode } from './movement'
+import { notify, setUpNotice } from './notice'
 import { placesPanel } from './places_panel'
 import { setUpReadout } from './readout'
 import { followLink, savePanel } from './save_panel'
@@ -123,7 +124,8 @@ function start(): void {
     const first = shape === ''
     await viewer.show(solution)
     document.title = solution.title ? `${solution.title} – Exitance` : 'Exitance'
-    byId('title').textContent = solution.title
+    byId('title').textContent = byId('title').title = solution.title
+    if (!server?.solving && solution.energy.emitted <= 0) notify('Nothing emits light here: it stays dark.')
     if (signature(solution) !== shape) fillPanel(viewer, grids, tape)
     shape = signature(solution)
     if (!first) return
@@ -132,6 +134,7 @@ function start(): void {
     viewer.canvas.focus({ preventScroll: true })
     message('')
   }
+  setUpNotice()
   setUpBar(viewer)
   setUpPanel()
   setUpLegend(viewer, byId('legend'))

@@ -5,6 +5,7 @@
 import * as THREE from 'three'
 import { FlightPath } from './flight_path'
 import { between, copyOf, lineOfSight, moved, orbited, type Pose, poseLooking, reference, turned, zoomed } from './pose'
+import { bodyOf, type Obstacles, walked } from './walker'
 
 export type Mode = 'orbit' | 'walk'
 const DEGREE = Math.PI / 180
@@ -27,6 +28,7 @@ export class Movement extends EventTarget {
   speed = 1.4
   eyeHeight = 1.6
   feel: Feeler = () => undefined
+  obstacles: Obstacles = () => {}
   /** Whether somebody takes a tap for something else than moving. */
   takesTap: (x: number, y: number) => boolean = () => false
   /** A tap that no second one follows. */
@@ -288,12 +290,24 @@ export class Movement extends EventTarget {
     return way.lengthSq() > 0 || fell
   }
 
-  /** A step along `direction`, but not through walls. */
+  /** A step along `direction`: on foot along what is in the way, up and down what is low. */
   private walkBy(direction: THREE.Vector3, length: number): void {
-    const sense = direction.clone().multiplyScalar(Math.sign(length))
-    const free = this.feel(this.pose.eye, sense), berth = 0.15 * this.eyeHeight
-    const step = free === undefined ? Math.abs(length) : Math.max(0, Math.min(Math.abs(length), free - berth))
-    if (step > 0) this.set(moved(this.pose, sense.multiplyScalar(step)))
+    const step = direction.clone().multiplyScalar(length)
+    if (this.mode === 'walk') this.set(moved(this.pose, this.stepFrom(this.pose.eye, step)))
+    else this.set(moved(this.pose, step))
+  }
+
+  /** How far the eyes come of a step that is wanted. */
+  private stepFrom(eye: THREE.Vector3, step: THREE.Vector3): THREE.Vector3 {
+    const feet = eye.clone().setY(eye.y - this.eyeHeight), level = step.clone().setY(0)
+    return walked(this.obstacles, feet, level, bodyOf(this.eyeHeight, this.gravity)).sub(feet)
+      .setY(this.gravity ? 0 : this.risen(eye, step.y))
+  }
+  /** Up to a ceiling, down to a floor, a berth away. */
+  private risen(eye: THREE.Vector3, by: number): number {
+    if (by === 0) return 0
+    const free = this.feel(eye, new THREE.Vector3(0, Math.sign(by), 0)) ?? Infinity
+    return Math.sign(by) * Math.max(0, Math.min(Math.abs(by), free - 0.15 * this.eyeHeight))
   }
 
   /** The eyes stay so high above what is below them. */

@@ -35,6 +35,11 @@ export function count(value: number): string {
   return format({ maximumFractionDigits: 0 }).format(value)
 }
 
+/** To four figures, as many as it needs. */
+export function general(value: number): string {
+  return format({ maximumSignificantDigits: Math.abs(value) >= 1000 ? 9 : 4, useGrouping: false }).format(value)
+}
+
 /** Metres, to the millimetre where that says something. */
 export function metres(value: number): string {
   return `${format({ minimumFractionDigits: 2, maximumFractionDigits: Math.abs(value) < 10 ? 3 : 2 }).format(value)} m`

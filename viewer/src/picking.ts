@@ -50,6 +50,20 @@ export function pick(mesh: LitMesh, solution: Solution, ray: THREE.Ray, section?
   return { point: hit.point.clone(), normal, triangle, barycentric: [weights.x, weights.y, weights.z], distance: hit.distance }
 }
 
+/** Hands over the triangles that may reach into `box`, both in the page's frame. */
+export function trianglesWithin(mesh: LitMesh, box: THREE.Box3,
+  each: (a: THREE.Vector3, b: THREE.Vector3, c: THREE.Vector3) => void): void {
+  const turn = mesh.quaternion
+  const local = box.clone().applyMatrix4(new THREE.Matrix4().makeRotationFromQuaternion(turn.clone().invert()))
+  mesh.bvh.shapecast({
+    intersectsBounds: (bounds) => bounds.intersectsBox(local),
+    intersectsTriangle: ({ a, b, c }) => {
+      each(a.clone().applyQuaternion(turn), b.clone().applyQuaternion(turn), c.clone().applyQuaternion(turn))
+      return false
+    },
+  })
+}
+
 /** `factors`: three per group, as they are shown. */
 export function read(solution: Solution, place: Place, factors: number[]): Reading {
   const primitive = primitiveOfTriangle(solution, place.triangle)

@@ -3,12 +3,24 @@
 
 import { button, element, numberField, row, section } from './elements'
 import { exportMix } from './export_glb'
+import { notifyError } from './notice'
+import { ask } from './program'
+import { LEAST_PICTURE, MOST_PICTURE } from './stage'
 import type { Viewer } from './viewer'
 
 function download(blob: Blob, name: string): void {
   const link = element('a', { href: URL.createObjectURL(blob), download: name })
   link.click()
   setTimeout(() => URL.revokeObjectURL(link.href), 10000)
+}
+
+/** A button that makes a file and hands it over; the user is told where that fails. */
+function saver(text: string, id: string, file: string, make: () => Promise<Blob>, title?: string): HTMLButtonElement {
+  const out = button(text, () => {
+    out.disabled = true
+    make().then((blob) => download(blob, file)).catch(notifyError).finally(() => (out.disabled = false))
+  }, { id, title })
+  return out
 }
 
 /** The address of this page with where one stands, and the brightness and colour of the lights. */
@@ -40,12 +52,11 @@ export function followLink(viewer: Viewer, hash: string): boolean {
 export function savePanel(viewer: Viewer): HTMLElement {
   const name = (viewer.solution.title || 'exitance').replace(/[^\w-]+/g, '_').toLowerCase()
   let width = 1920, height = 1080
-  const limited = (v: number) => Math.round(Math.min(8192, Math.max(16, v)))
-  const w = numberField('Width of the picture in pixels', 'picture-width', width, (v) => (width = limited(v)))
-  const h = numberField('Height of the picture in pixels', 'picture-height', height, (v) => (height = limited(v)))
-  const picture = button('Picture', async () => download(await viewer.picture(width, height), `${name}.png`), { id: 'picture' })
-  const mix = button('Model with this light', () => download(exportMix(viewer), `${name}_lit.glb`),
-    { id: 'export', title: 'A .glb with plain vertex colours' })
+  const sides = () => ({ least: LEAST_PICTURE, most: MOST_PICTURE, whole: true })
+  const w = numberField('Width of the picture in pixels', 'picture-width', () => width, (v) => (width = v), sides)
+  const h = numberField('Height of the picture in pixels', 'picture-height', () => height, (v) => (height = v), sides)
+  const picture = saver('Picture', 'picture', `${name}.png`, () => viewer.picture(width, height))
+  const mix = saver('Model with this light', 'export', `${name}_lit.glb`, async () => exportMix(viewer), 'A .glb with plain vertex colours')
   const link = button('Link to here', async () => {
     const url = linkHere(viewer)
     history.replaceState(null, '', url.slice(url.indexOf('#')))
@@ -59,7 +70,7 @@ export function savePanel(viewer: Viewer): HTMLElement {
   }, { id: 'link' })
   // What is shown as the program has it; a page of its own holds it in another form.
   const whole = document.getElementById('grids') ? null
-    : button('Solution', async () => download(await (await fetch('solution.glb')).blob(), `${name}.glb`), { id: 'solution-file', title: 'The .glb with the light of every group' })
+    : saver('Solution', 'solution-file', `${name}.glb`, async () => new Blob([(await ask('solution.glb')).bytes]), 'The .glb with the light of every group')
   return section('Save and share', 'panel-save', false,
     row(w, element('span', { class: 'faint' }, '×'), h, picture), element('div', { class: 'buttons' }, mix, whole, link))
 }

@@ -5,15 +5,28 @@
 import * as THREE from 'three'
 import { falseColour } from './false_colour'
 import type { FloatingLabels } from './floating_labels'
+import { notifyError } from './notice'
 import { figures } from './numbers'
+import { ask } from './program'
 import type { SensorGrid } from './solution'
 import { luminance } from './tone'
 import type { Viewer } from './viewer'
 
 export interface GridFigures { name: string; min: number; mean: number; max: number; uniformity: number }
+/** What a sensor reads as the lights are mixed. */
+export interface SensorReading {
+  grid: string
+  column: number               // from 1
+  row: number
+  illuminance: number
+  shares: number[]             // of it, per group, 0 ... 1
+  point: THREE.Vector3         // of its plane, in the page's frame
+  distance: number
+}
 type Readings = (number[] | null)[]
 
 const MOST_NUMBERS = 400
+const sum = (values: number[]) => values.reduce((a, b) => a + b, 0)
 
 /** Where sensor (i, j) lies, in the scene's frame; continuous, so that 0 ... columns is the plane. */
 function pointOf(grid: SensorGrid, i: number, j: number): THREE.Vector3 {
@@ -24,6 +37,8 @@ function pointOf(grid: SensorGrid, i: number, j: number): THREE.Vector3 {
 
 export class SensorGrids extends EventTarget {
   figures: GridFigures[] = []
+  /** Whether they are asked for; what they read may still be on its way. */
+  wanted = false
   private shown = false
   private readings?: Readings
   private planes = new THREE.Group()
@@ -31,33 +46,74 @@ export class SensorGrids extends EventTarget {
   constructor(private viewer: Viewer, private labels: FloatingLabels) {
     super()
     viewer.stage.overlay.add(this.planes)
+    viewer.sensors = (ray) => this.met(ray)
     viewer.addEventListener('settings', () => this.refresh())
     viewer.addEventListener('solution', () => {
       this.readings = undefined
-      if (this.shown) void this.show(true)
+      if (this.wanted) this.show(true).catch(notifyError)
     })
   }
 
   async show(shown: boolean): Promise<void> {
-    this.shown = shown
-    if (shown && !this.readings) {
-      const inside = document.getElementById('grids')
-      this.readings = JSON.parse(inside ? inside.textContent! : await (await fetch('grids.json')).text()) as Readings
+    this.wanted = shown
+    try {
+      if (shown) this.readings ??= await this.askForReadings()
+    } catch (error) {
+      this.wanted = false
+      throw error
+    } finally {
+      this.shown = this.wanted
+      this.refresh()
+      this.viewer.changed()
     }
-    this.refresh()
-    this.viewer.changed()
   }
 
-  /** Illuminance of every sensor of a grid as the lights are mixed now. */
+  private async askForReadings(): Promise<Readings> {
+    const inside = document.getElementById('grids')
+    return JSON.parse(inside ? inside.textContent! : new TextDecoder().decode((await ask('grids.json')).bytes)) as Readings
+  }
+
+  /** Illuminance of sensor `k` by each group, as the lights are mixed now. */
+  private byGroup(readings: number[], k: number, factors: number[]): number[] {
+    const groups = factors.length / 3
+    return Array.from({ length: groups }, (_, g) => {
+      const [r, green, b] = [0, 1, 2].map((c) => factors[3 * g + c] * readings[3 * (k * groups + g) + c])
+      return luminance(r, green, b)
+    })
+  }
   private values(grid: SensorGrid, readings: number[]): Float64Array {
-    const factors = this.viewer.mix.factors(performance.now()), groups = factors.length / 3
-    const out = new Float64Array(grid.columns * grid.rows)
-    for (let k = 0; k < out.length; ++k)
-      for (let g = 0; g < groups; ++g) {
-        const at = 3 * (k * groups + g)
-        out[k] += luminance(factors[3 * g] * readings[at], factors[3 * g + 1] * readings[at + 1], factors[3 * g + 2] * readings[at + 2])
-      }
-    return out
+    const factors = this.viewer.mix.factors(performance.now())
+    return Float64Array.from({ length: grid.columns * grid.rows }, (_, k) => sum(this.byGroup(readings, k, factors)))
+  }
+
+  /** The nearest sensor that a ray meets. */
+  private met(ray: THREE.Ray): SensorReading | null {
+    const found = !this.shown ? [] : this.viewer.solution.grids.flatMap((grid, i) => {
+      const readings = this.readings?.[i], across = readings && this.across(grid, ray)
+      if (!across) return []
+      const [column, row] = [Math.floor(across.i), Math.floor(across.j)]
+      const lux = this.byGroup(readings, row * grid.columns + column, this.viewer.mix.factors(performance.now())), all = sum(lux)
+      return [{ grid: grid.name, column: column + 1, row: row + 1, illuminance: all, shares: lux.map((v) => (all > 0 ? v / all : 0)),
+        point: across.point, distance: across.point.distanceTo(ray.origin) }]
+    })
+    return found.sort((a, b) => a.distance - b.distance)[0] ?? null
+  }
+
+  /** Where a ray crosses the plane of a grid, in sensors, unless the section cuts it away there. */
+  private across(grid: SensorGrid, ray: THREE.Ray): { i: number; j: number; point: THREE.Vector3 } | null {
+    const [a, b, c] = [[0, 0], [grid.columns, 0], [0, grid.rows]].map(([i, j]) => this.onPlane(grid, i, j))
+    const u = b.sub(a), v = c.sub(a), normal = u.clone().cross(v), area = normal.lengthSq()
+    const distance = a.clone().sub(ray.origin).dot(normal) / ray.direction.dot(normal)
+    if (!(distance > 0)) return null
+    const point = ray.at(distance, new THREE.Vector3()), way = point.clone().sub(a)
+    const s = way.clone().cross(v).dot(normal) / area, t = u.clone().cross(way).dot(normal) / area
+    return s >= 0 && s < 1 && t >= 0 && t < 1 && !this.viewer.isCut(point) ? { i: s * grid.columns, j: t * grid.rows, point } : null
+  }
+
+  /** Where the plane is drawn, in the page's frame: a little off the surface that it may lie on. */
+  private onPlane(grid: SensorGrid, i: number, j: number): THREE.Vector3 {
+    const off = 2e-3 * this.viewer.box.getSize(new THREE.Vector3()).length()
+    return this.viewer.toPage(pointOf(grid, i, j).addScaledVector(new THREE.Vector3(...grid.normal).normalize(), off))
   }
 
   private refresh(): void {
@@ -99,11 +155,10 @@ export class SensorGrids extends EventTarget {
     map.colorSpace = THREE.SRGBColorSpace
     map.needsUpdate = true
     const corners = [[0, 0], [grid.columns, 0], [grid.columns, grid.rows], [0, grid.rows]]
-    // A little off the surface that it may lie on.
-    const off = new THREE.Vector3(...grid.normal).normalize().multiplyScalar(2e-3 * this.viewer.box.getSize(new THREE.Vector3()).length())
-    const geometry = new THREE.BufferGeometry().setFromPoints(corners.map(([i, j]) => this.viewer.toPage(pointOf(grid, i, j).add(off))))
+    const geometry = new THREE.BufferGeometry().setFromPoints(corners.map(([i, j]) => this.onPlane(grid, i, j)))
     geometry.setAttribute('uv', new THREE.Float32BufferAttribute([0, 0, 1, 0, 1, 1, 0, 1], 2))
     geometry.setIndex([0, 1, 2, 0, 2, 3])
-    return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ map, side: THREE.DoubleSide, toneMapped: false }))
+    return new THREE.Mesh(geometry, new THREE.MeshBasicMaterial({ map, side: THREE.DoubleSide, toneMapped: false,
+      clippingPlanes: this.viewer.stage.cut }))
   }
 }

@@ -3,7 +3,9 @@
 
 import { applyDelta } from './byte_delta'
 import { byId, element } from './elements'
+import { notify, notifyError } from './notice'
 import { count, fine, percent } from './numbers'
+import { ask } from './program'
 import { readSolution, type Solution } from './solution'
 
 interface Progress { phase: string; seconds: number; done: number; paused: boolean; fraction_left: number; vertices: number; shots: number; error?: number }
@@ -25,7 +27,8 @@ export class Server extends EventTarget {
   /** How many bytes each revision took that came as what had changed. */
   readonly deltas: number[] = []
   private file?: ArrayBuffer  // of the revision that is shown, while others may follow
-  private solving = false
+  /** Whether others follow, each lit better. */
+  solving = false
   private events = new EventSource('events')
   private busy = false
   private wanted = 0
@@ -38,14 +41,18 @@ export class Server extends EventTarget {
       void this.load()
     })
     this.events.addEventListener('progress', (event) => this.showProgress(JSON.parse(event.data) as Progress))
-    // The program has ended: what is here stays usable.
-    this.events.addEventListener('error', () => {
-      this.events.close()
-      byId('solving').hidden = true
-      if (!this.shown) this.fail('The program has ended before there was anything to show.')
-    })
+    this.events.addEventListener('error', () => this.lose())
     byId('solving-pause').addEventListener('click', () => void this.command(this.paused ? 'resume' : 'pause'))
     byId('solving-stop').addEventListener('click', () => void this.command('stop'))
+  }
+
+  /** The program has ended: what is here stays usable. */
+  private lose(): void {
+    this.events.close()
+    byId('solving').hidden = true
+    if (!this.shown) this.fail('The program has ended before there was anything to show.')
+    else notify(`The program has ended${this.solving ? ' before the solve was done: this is how far it came' : ''}. `
+      + 'Moving, the lights, readings and pictures still work; the solution cannot be had from this page any more.')
   }
 
   /** One after the other; what is overtaken meanwhile is skipped. */
@@ -61,7 +68,8 @@ export class Server extends EventTarget {
         this.dispatchEvent(new Event('shown'))
       }
     } catch (error) {
-      this.fail(error instanceof Error ? error.message : String(error))
+      if (this.shown) notifyError(error)
+      else this.fail(error instanceof Error ? error.message : String(error))
     }
     this.busy = false
   }
@@ -69,16 +77,14 @@ export class Server extends EventTarget {
   /** What has changed since what is shown, or the whole file. */
   private async fetchRevision(): Promise<{ revision: number; bytes: ArrayBuffer }> {
     if (this.file) {
-      const answer = await fetch(`delta?from=${this.shown}`)
-      if (answer.ok) {
-        const delta = await answer.arrayBuffer()
-        this.deltas.push(delta.byteLength)
-        return applyDelta(this.file, delta)
+      const { status, bytes } = await ask(`delta?from=${this.shown}`, {}, 410)
+      if (status !== 410) {
+        this.deltas.push(bytes.byteLength)
+        return applyDelta(this.file, bytes)
       }
     }
-    const answer = await fetch('solution.glb')
-    if (!answer.ok) throw Error(`The program answers ${answer.status}.`)
-    return { revision: Number(answer.headers.get('ETag')!.slice(1, -1)), bytes: await answer.arrayBuffer() }
+    const { headers, bytes } = await ask('solution.glb')
+    return { revision: Number(headers.get('ETag')!.slice(1, -1)), bytes }
   }
 
   private showProgress(progress: Progress): void {
@@ -93,7 +99,7 @@ export class Server extends EventTarget {
   }
 
   private async command(command: string): Promise<void> {
-    await fetch('command', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ command }) })
+    await ask('command', { method: 'POST', headers: { 'Content-Type': 'application/json' }, body: JSON.stringify({ command }) }).catch(notifyError)
   }
 
   /** The program ends when nobody listens any more. */

@@ -8,6 +8,11 @@ import { type Look, LOOKS, lookUniforms, type LookUniforms } from './shading'
 import type { Solution } from './solution'
 import { automaticExposure, TONE_CURVES, type ToneCurve, whiteOf } from './tone'
 
+// Sides of a picture [pixels]: what browsers hold in one canvas. It is drawn in tiles, each within what graphics
+// cards draw at once.
+export const LEAST_PICTURE = 16, MOST_PICTURE = 16384
+const MOST_TILE = 2048
+
 export class Stage {
   readonly renderer: THREE.WebGLRenderer
   readonly camera = new THREE.PerspectiveCamera(45, 1, 0.01, 100)
@@ -18,6 +23,8 @@ export class Stage {
   readonly overlay = new THREE.Group()
   mesh!: LitMesh
   uniforms!: LookUniforms
+  /** The section, for what three.js shades; what the page shades itself has it in the uniforms. */
+  readonly cut: THREE.Plane[] = []
   private columns: 'exitance' | 'irradiance' | 'unshot' = 'exitance'
   private meter = new THREE.WebGLRenderTarget(96, 54, { type: THREE.FloatType, depthBuffer: true })
   private eye = new THREE.WebGLRenderTarget(1, 1, { type: THREE.FloatType, depthBuffer: true })
@@ -25,6 +32,7 @@ export class Stage {
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: 'high-performance' })
     this.renderer.xr.enabled = true
+    this.renderer.localClippingEnabled = true
     this.rig.add(this.camera)
     this.scene.add(this.overlay, this.rig)
   }
@@ -50,6 +58,12 @@ export class Stage {
     this.uniforms.look.value = LOOKS.indexOf(look)
     this.columns = look === 'unshot' ? 'unshot' : look === 'illuminance' || (contours && look !== 'exitance') ? 'irradiance' : 'exitance'
     this.mesh.showColumns(this.columns)
+  }
+  /** Shows what lies where dot(xyz, p) <= w, in the page's frame; everything if xyz is 0. */
+  setSection(section: THREE.Vector4): void {
+    this.uniforms.section.value.copy(section)
+    const { x, y, z, w } = section
+    this.cut.splice(0, 1, ...(x || y || z ? [new THREE.Plane(new THREE.Vector3(-x, -y, -z), w)] : []))
   }
   setToneCurve(curve: ToneCurve): void {
     this.uniforms.toneCurve.value = TONE_CURVES.indexOf(curve)
@@ -136,14 +150,25 @@ export class Stage {
   /** A picture of any size as PNG. */
   async picture(pose: Pose, width: number, height: number): Promise<Blob> {
     const ratio = this.renderer.getPixelRatio(), size = this.renderer.getSize(new THREE.Vector2())
+    const sheet = document.createElement('canvas')
+    sheet.width = width
+    sheet.height = height
+    const context = sheet.getContext('2d')
     this.renderer.setPixelRatio(1)
-    this.renderer.setSize(width, height, false)
     this.aim(pose, width / height)
-    this.renderer.render(this.scene, this.camera)
-    const blob = await new Promise<Blob | null>((done) => this.canvas.toBlob(done, 'image/png'))
+    for (let y = 0; context && y < height; y += MOST_TILE)
+      for (let x = 0; x < width; x += MOST_TILE) {
+        const w = Math.min(MOST_TILE, width - x), h = Math.min(MOST_TILE, height - y)
+        this.renderer.setSize(w, h, false)
+        this.camera.setViewOffset(width, height, x, y, w, h)
+        this.renderer.render(this.scene, this.camera)
+        context.drawImage(this.canvas, x, y)
+      }
+    this.camera.clearViewOffset()
     this.renderer.setPixelRatio(ratio)
     this.renderer.setSize(size.x, size.y, false)
-    if (!blob) throw Error('The picture could not be made.')
+    const blob = await new Promise<Blob | null>((done) => sheet.toBlob(done, 'image/png'))
+    if (!blob) throw Error(`A picture of ${width} × ${height} pixels is more than this browser can make.`)
     return blob
   }
 }

@@ -32,8 +32,8 @@ export function levelsOfTriangles(solution: Solution): Uint8Array {
   return out
 }
 
-/** Each edge once, in the level of the finer of its triangles. */
-export function meshLines(solution: Solution, position: THREE.BufferAttribute): THREE.Group {
+/** Each edge once, in the level of the finer of its triangles; nothing beyond the planes of `cut`. */
+export function meshLines(solution: Solution, position: THREE.BufferAttribute, cut: THREE.Plane[]): THREE.Group {
   const levels = levelsOfTriangles(solution), { indices } = solution, vertices = position.count
   const edges = new Map<number, number>()
   for (let t = 0; t < levels.length; ++t)
@@ -50,7 +50,7 @@ export function meshLines(solution: Solution, position: THREE.BufferAttribute): 
     const geometry = new THREE.BufferGeometry()
     geometry.setAttribute('position', position)
     geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(pairs), 1))
-    const lines = new THREE.LineSegments(geometry, lineMaterial(colourOfLevel(level)))
+    const lines = new THREE.LineSegments(geometry, lineMaterial(colourOfLevel(level), cut))
     lines.frustumCulled = false
     lines.userData.level = level
     out.add(lines)
@@ -59,8 +59,8 @@ export function meshLines(solution: Solution, position: THREE.BufferAttribute): 
 }
 
 /** A hair nearer than the surfaces that the lines lie on. */
-function lineMaterial(color: THREE.Color): THREE.LineBasicMaterial {
-  const out = new THREE.LineBasicMaterial({ color, transparent: true, opacity: 0.8, toneMapped: false })
+function lineMaterial(color: THREE.Color, clippingPlanes: THREE.Plane[]): THREE.LineBasicMaterial {
+  const out = new THREE.LineBasicMaterial({ color, transparent: true, opacity: 0.8, toneMapped: false, clippingPlanes })
   out.onBeforeCompile = (shader) => {
     shader.vertexShader = shader.vertexShader.replace('#include <logdepthbuf_vertex>', '#include <logdepthbuf_vertex>\ngl_Position.z -= 2e-4 * gl_Position.w;')
   }

@@ -28,9 +28,8 @@ export class Tape {
   /** Whether the tape takes a tap. */
   tap(x: number, y: number): boolean {
     if (!this.on) return false
-    const place = this.viewer.pickAt(x, y)
-    if (!place) return true
-    const here = this.viewer.toPage(place.point)
+    const here = this.viewer.touchAt(x, y)
+    if (!here) return true
     if (this.from) {
       this.length = this.from.distanceTo(here)
       this.draw([this.from, here])

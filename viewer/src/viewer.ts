@@ -6,8 +6,9 @@ import * as THREE from 'three'
 import { automaticView } from './automatic_view'
 import { LightMix } from './light_mix'
 import { Movement } from './movement'
-import { pick, type Place, read, type Reading } from './picking'
+import { pick, type Place, read, type Reading, trianglesWithin } from './picking'
 import { copyOf, type Pose, poseLooking, poseOfCamera, reference, turnOfUp } from './pose'
+import type { SensorReading } from './sensor_grids'
 import type { Look } from './shading'
 import type { Solution } from './solution'
 import { Stage } from './stage'
@@ -29,6 +30,8 @@ export class Viewer extends EventTarget {
   contour = 0                  // step, 0 = none
   wires = false
   section = { axis: -1, at: 0.5, flipped: false }  // axis 0, 1, 2 of the page; at: 0 ... 1 of the box
+  /** The nearest shown sensor that a ray of the page's frame meets. */
+  sensors: (ray: THREE.Ray) => SensorReading | null = () => null
   pointer?: { x: number; y: number }
   readonly bookmarks: { eye: number[]; look_at: number[]; fov: number }[] = []
   /** Called before each frame that a headset shows. */
@@ -45,6 +48,7 @@ export class Viewer extends EventTarget {
     this.stage = new Stage(canvas)
     this.movement = new Movement(canvas, poseLooking(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 45))
     this.movement.feel = (from, direction) => this.pickRay(new THREE.Ray(from, direction), false)?.distance
+    this.movement.obstacles = (box, each) => trianglesWithin(this.stage.mesh, box, each)
     this.movement.onDoubleTap = (x, y) => {
       const place = this.pickAt(x, y)
       if (place) this.movement.goTo(this.toPage(place.point), place.normal.clone().applyQuaternion(this.turn))
@@ -73,7 +77,7 @@ export class Viewer extends EventTarget {
     if (first) this.enter()
     this.setLook(this.look)
     this.setToneCurve(this.toneCurve)
-    this.stage.mesh.showWires(this.wires)
+    this.stage.mesh.showWires(this.wires, this.stage.cut)
     this.lightChanged()
     this.dispatchEvent(new Event('solution'))
     if (first) this.stage.renderer.setAnimationLoop((now, frame) => this.frame(now, frame))
@@ -176,19 +180,19 @@ export class Viewer extends EventTarget {
   }
   setWires(shown: boolean): void {
     this.wires = shown
-    this.stage.mesh.showWires(shown)
+    this.stage.mesh.showWires(shown, this.stage.cut)
     this.told()
   }
   setSection(change: Partial<Viewer['section']>): void {
     Object.assign(this.section, change)
-    const { axis, at, flipped } = this.section, plane = this.stage.uniforms.section.value
-    plane.set(0, 0, 0, 0)
+    const { axis, at, flipped } = this.section, plane = new THREE.Vector4(0, 0, 0, 0)
     if (axis >= 0) {
       const low = this.box.min.getComponent(axis), high = this.box.max.getComponent(axis)
       const sign = flipped ? -1 : 1
       plane.setComponent(axis, sign)
       plane.w = sign * (low + (high - low) * at)
     }
+    this.stage.setSection(plane)
     this.told()
   }
 
@@ -219,11 +223,12 @@ export class Viewer extends EventTarget {
   private pickRay(ray: THREE.Ray, sectioned = true): Place | null {
     return pick(this.stage.mesh, this.solution, ray, sectioned ? this.stage.uniforms.section.value : undefined)
   }
-  /** `x`, `y`: CSS pixels of the canvas. */
+  // `x`, `y`: CSS pixels of the canvas.
+
   /** In orbit: turns to what lies under a place of the canvas and from now on about it. */
   lookAt(x: number, y: number): void {
-    const place = this.movement.mode === 'orbit' ? this.pickAt(x, y) : null
-    if (place) this.movement.lookAt(this.toPage(place.point))
+    const point = this.movement.mode === 'orbit' ? this.touchAt(x, y) : null
+    if (point) this.movement.lookAt(point)
   }
   /** In the page's frame, nothing beyond the section. */
   placeAlong(ray: THREE.Ray): Place | null {
@@ -236,8 +241,24 @@ export class Viewer extends EventTarget {
     const place = this.pickAt(x, y)
     return place && read(this.solution, place, this.mix.factors(performance.now()))
   }
-  /** Whether a surface stands between the eye and a place of the page's frame. */
+  /** What is seen at a place of the canvas, be it a surface or a plane of sensors: where, in the page's frame. */
+  touchAt(x: number, y: number): THREE.Vector3 | null {
+    const place = this.pickAt(x, y)
+    return this.sensorAt(x, y)?.point ?? (place && this.toPage(place.point))
+  }
+  /** The sensor that is seen at a place of the canvas, no surface before it. */
+  sensorAt(x: number, y: number): SensorReading | null {
+    if (!this.solution) return null
+    const ray = this.stage.ray(this.pose, x, y), sensor = this.sensors(ray), hit = sensor && this.pickRay(ray)
+    return sensor && !(hit && hit.distance < sensor.distance) ? sensor : null
+  }
+  /** Whether the section cuts a place of the page's frame away. */
+  isCut(at: THREE.Vector3): boolean {
+    return this.stage.cut.some((plane) => plane.distanceToPoint(at) < 0)
+  }
+  /** Whether a surface stands between the eye and a place of the page's frame, or the section cuts it away. */
   isHidden(at: THREE.Vector3): boolean {
+    if (this.isCut(at)) return true
     const way = at.clone().sub(this.pose.eye), distance = way.length()
     const hit = this.pickRay(new THREE.Ray(this.pose.eye, way.divideScalar(distance)))
     return hit !== null && hit.distance < 0.98 * distance
@@ -300,9 +321,9 @@ export class Viewer extends EventTarget {
     this.draw()
   }
 
-  async picture(width: number, height: number): Promise<Blob> {
-    const blob = await this.stage.picture(this.pose, width, height)
-    this.changed()
+  picture(width: number, height: number): Promise<Blob> {
+    const blob = this.stage.picture(this.pose, width, height)
+    this.changed()  // it was drawn where the page is
     return blob
   }
 
