@@ -37,6 +37,29 @@ describe('looks', () => {
       await page.keyboard.press('F1')
     }))
 
+  it('no pinhole is left where surfaces meet', () => visit('office.glb', async (page) => {
+    // From inside a closed room nothing but surfaces is seen: pixels that nothing covers, with the rims and without.
+    const open = await page.evaluate(() => {
+      const { viewer } = window.exitance, { stage } = viewer, { eye } = viewer.place()
+      stage.meter.setSize(1200, 800)
+      const uncovered = () => {
+        let found = 0
+        for (let turn = 0; turn < 12; ++turn) {
+          const angle = 2 * Math.PI * turn / 12
+          viewer.movement.pose = viewer.poseAt(eye, [eye[0] + Math.cos(angle), eye[1] + 0.1, eye[2] + Math.sin(angle)], 60)
+          viewer.settle()
+          found += stage.measure(stage.meter).reduce((n, v, i) => n + (i % 4 === 3 && v < 1 ? 1 : 0), 0)
+        }
+        return found
+      }
+      const closed = uncovered()
+      for (const mesh of stage.mesh.children) for (const rims of mesh.children) rims.visible = false
+      return [closed, uncovered()]
+    })
+    assert.equal(open[0], 0)
+    assert.ok(open[1] > 0, 'there would be some')
+  }))
+
   it('the keyboard alone: every stop is seen, none is a trap, panels widen', () => visit('room.glb', async (page) => {
     await page.locator('#view').focus()
     const stops = []

@@ -4,6 +4,7 @@
 
 import * as THREE from 'three'
 import { MeshBVH } from 'three-mesh-bvh'
+import { rimsAround, rimsOf } from './rims'
 import { type Columns, floatTexture, type LookUniforms, REST_WIDTH, surfaceMaterial } from './shading'
 import { meshLines } from './subdivision'
 import type { Primitive, Solution, TextureImage } from './solution'
@@ -68,9 +69,11 @@ export class LitMesh extends THREE.Group {
     const box = new THREE.Box3().setFromBufferAttribute(this.geometry.getAttribute('position') as THREE.BufferAttribute)
     this.geometry.boundingBox = box
     if (solution.unshot) this.waiting = this.unshot(solution.unshot)
+    const rims = rimsOf(solution)
     for (const mesh of [this.shine, this.receive, this.waiting]) {
       if (!mesh) continue
-      mesh.frustumCulled = false
+      if (rims) mesh.add(rimsAround(mesh, rims))
+      mesh.traverse((part) => (part.frustumCulled = false))
       this.add(mesh)
     }
     this.showColumns('exitance')
@@ -158,11 +161,10 @@ export class LitMesh extends THREE.Group {
    * all surfaces; or what is still unshot. */
   showColumns(which: 'exitance' | 'irradiance' | 'unshot'): void {
     this.shine.visible = which === 'exitance'
-    const materials = this.receive.material as THREE.Material[]
-    this.solution.primitives.forEach((p, i) => {
-      materials[i].visible = which === 'irradiance' || isPatterned(this.solution, p)
-    })
-    this.receive.visible = which !== 'unshot' && materials.some((m) => m.visible)
+    const shown = this.solution.primitives.map((p) => which === 'irradiance' || isPatterned(this.solution, p))
+    for (const part of [this.receive, ...this.receive.children] as THREE.Mesh[])
+      (part.material as THREE.Material[]).forEach((material, i) => (material.visible = shown[i]))
+    this.receive.visible = which !== 'unshot' && shown.includes(true)
     if (this.waiting) this.waiting.visible = which === 'unshot'
   }
 
@@ -198,10 +200,11 @@ export class LitMesh extends THREE.Group {
   }
 
   dispose(): void {
-    for (const mesh of [this.shine, this.receive, this.waiting]) {
-      mesh?.geometry.dispose()
-      for (const material of [mesh?.material ?? []].flat()) material.dispose()
-    }
+    for (const mesh of [this.shine, this.receive, this.waiting])
+      for (const { geometry, material } of (mesh ? [mesh, ...mesh.children] : []) as THREE.Mesh[]) {
+        geometry.dispose()
+        for (const each of [material].flat()) each.dispose()
+      }
     for (const texture of this.restLight) texture.dispose()
     this.geometry.dispose()
     for (const lines of (this.wires?.children ?? []) as THREE.LineSegments[]) {

@@ -62,6 +62,10 @@ in vec3 position, normal;
 ${patterned ? 'in vec2 uv0, uv1;\nout vec2 place0, place1;' : ''}
 ${list(columns, (k) => `in vec3 column${k};`).join('\n')}
 out vec3 light, facing, where;
+#ifdef RIM
+uniform vec3 cameraPosition;
+out float towards;
+#endif
 void main() {
   light = ${list(columns, (k) => `factors[${k}] * column${k}`).join(' + ')};
   ${rest > 0 ? `for (int k = 0; k < ${rest}; ++k) {
@@ -73,6 +77,11 @@ void main() {
   vec4 world = modelMatrix * vec4(position, 1.0);
   where = world.xyz;
   gl_Position = projectionMatrix * viewMatrix * world;
+#ifdef RIM
+  // At the end of what is seen: only where nothing else is.
+  towards = dot(mat3(modelMatrix) * normal, cameraPosition - where);
+  gl_Position.z = (1.0 - 1e-5) * gl_Position.w + 5e-6 * gl_Position.z;
+#endif
 }`
 }
 
@@ -91,11 +100,17 @@ uniform vec3 reflectanceTexel, emissionTexel;
 uniform vec2 most;
 in vec2 place0, place1;` : ''}
 in vec3 light, facing, where;
+#ifdef RIM
+in float towards;
+#endif
 out vec4 colour;
 ${TONE_GLSL}
 ${FALSE_COLOUR_GLSL}
 void main() {
   if (dot(section.xyz, where) > section.w && section.xyz != vec3(0.0)) discard;
+#ifdef RIM
+  if (towards <= 0.0) discard;
+#endif
   vec3 rho = reflectance, E = emission;
   ${patterned ? `
   if (reflectanceTexel.r >= 0.0)
