@@ -120,7 +120,7 @@ describe('looks', () => {
     await page.mouse.move(180, 500)
     await page.waitForSelector('#readout:not([hidden])')
     assert.match(await page.textContent('#read-distance'), /^\d+,\d+ m$/)
-    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390)
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 360)
     await page.click('#panel-toggle')
     assert.ok(await page.locator('#weight-0').isVisible())
     await page.click('#panel-toggle')
@@ -128,7 +128,20 @@ describe('looks', () => {
     await page.touchscreen.tap(100, 300)
     await page.waitForFunction((before) => document.getElementById('read-distance')?.textContent !== before, shown)
     assert.ok(await page.locator('#readout').isVisible(), 'a tap reads, and the reading stays')
-  }, { viewport: { width: 390, height: 780 }, locale: 'de-DE', hasTouch: true }))
+    await page.click('#help-open')
+    assert.equal(await page.evaluate(() => document.getElementById('help').scrollTop), 0, 'help begins at its beginning')
+    await page.keyboard.press('Escape')
+    // The title and what is said while a scene is being lit have room, and nothing lies over them.
+    assert.ok(await page.locator('#title').isVisible())
+    await page.evaluate(() => {
+      document.getElementById('solving').hidden = false
+      document.getElementById('solving-text').textContent = '13 % unshot 44 % · 1.470.062 vertices · error 12,3 %'
+    })
+    const [solving, read, ...within] = await Promise.all(['#solving', '#readout', '#title', '#solving-pause', '#solving-stop', '#solving-text']
+      .map((id) => page.locator(id).boundingBox()))
+    for (const box of [solving, ...within]) assert.ok(box.x >= 0 && box.x + box.width <= 360, JSON.stringify(box))
+    assert.ok(read.y >= solving.y + solving.height)
+  }, { viewport: { width: 360, height: 740 }, locale: 'de-DE', hasTouch: true }))
 })
 
 describe('size', () => {

@@ -3,6 +3,7 @@
 // stick turns by 30 degrees, the left stick walks where one looks. One metre is one metre.
 
 import * as THREE from 'three'
+import { notifyError } from './notice'
 import { poseLooking } from './pose'
 import type { Viewer } from './viewer'
 import { bodyOf, walked } from './walker'
@@ -25,7 +26,7 @@ export class Headset {
     this.rig = viewer.stage.rig
     this.ray.frustumCulled = this.ray.visible = this.ring.visible = false
     viewer.stage.overlay.add(this.ray, this.ring)
-    button.addEventListener('click', () => void this.toggle())
+    button.addEventListener('click', () => void this.toggle().catch(notifyError))
     void this.offer()
     navigator.xr?.addEventListener?.('devicechange', () => void this.offer())
   }

@@ -20,9 +20,13 @@ export function setUpHelp(dialog: HTMLDialogElement, opener: HTMLElement): void 
       element('section', {}, element('h3', {}, title), element('dl', {}, ...keys.flatMap(([key, what]) =>
         [element('dt', {}, element('kbd', {}, key)), element('dd', {}, what)]))))),
     element('p', {}, button('Close', () => dialog.close(), { id: 'help-close' })))
-  opener.addEventListener('click', () => dialog.showModal())
+  const open = () => {
+    dialog.showModal()
+    dialog.scrollTop = 0  // the focus is at its end
+  }
+  opener.addEventListener('click', open)
   addEventListener('keydown', (event) => {
-    if (event.key === 'F1' && !dialog.open) dialog.showModal()
+    if (event.key === 'F1' && !dialog.open) open()
     else if (event.key === 'F2' && dialog.open) dialog.close()
     else return
     event.preventDefault()

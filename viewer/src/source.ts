@@ -31,6 +31,7 @@ export class Server extends EventTarget {
   solving = false
   private events = new EventSource('events')
   private busy = false
+  private lost = false
   private wanted = 0
   private paused = false
 
@@ -48,6 +49,7 @@ export class Server extends EventTarget {
 
   /** The program has ended: what is here stays usable. */
   private lose(): void {
+    this.lost = true
     this.events.close()
     byId('solving').hidden = true
     if (!this.shown) this.fail('The program has ended before there was anything to show.')
@@ -68,8 +70,8 @@ export class Server extends EventTarget {
         this.dispatchEvent(new Event('shown'))
       }
     } catch (error) {
-      if (this.shown) notifyError(error)
-      else this.fail(error instanceof Error ? error.message : String(error))
+      if (this.shown && !this.lost) notifyError(error)
+      else if (!this.shown) this.fail(error instanceof Error ? error.message : String(error))
     }
     this.busy = false
   }
