@@ -32,6 +32,12 @@ describe('the instrument', () => {
     near(parseFloat(await page.textContent('#read-exitance')), 0.6 * found.illuminance, 0.02 * found.illuminance, 'B = rho H')
     near(found.shares[0] + found.shares[1], 1, 1e-6)
     assert.match(text, /left.*%/)
+    // What is under it changes when one moves and it rests.
+    await page.locator('#view').focus()
+    const before = await page.textContent('#read-distance')
+    await page.keyboard.press('z')
+    await page.waitForFunction((distance) => document.getElementById('read-distance').textContent !== distance, before)
+    near(parseFloat(await page.textContent('#read-distance')), (await reading(page, 450, 640)).distance, 1e-3)
   }))
 
   it('false colours agree with their legend', () => visit('cornell.glb', async (page) => {

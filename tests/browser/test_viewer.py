@@ -17,8 +17,9 @@ class Browser(unittest.TestCase):
         self.assertTrue((ROOT / "build/node/node_modules/playwright-core").is_dir(),
                         "scripts/setup test installs it")
         done = subprocess.run(
-            ["node", "--test", *sorted((ROOT / "tests/browser").glob("*.test.mjs"))], timeout=590,
-            text=True, capture_output=True,
+            ["node", "--test", "--test-reporter", "spec",  # says at its end what failed
+             *sorted((ROOT / "tests/browser").glob("*.test.mjs"))],
+            timeout=590, text=True, capture_output=True,
             env={**os.environ, "EXITANCE_PROGRAM": PROGRAM, "EXITANCE_SOURCE_DIR": str(ROOT)})
         self.assertEqual(done.returncode, 0, done.stdout[-6000:] + done.stderr[-2000:])
 

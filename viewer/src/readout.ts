@@ -43,4 +43,5 @@ export function setUpReadout(viewer: Viewer, output: HTMLElement): void {
   }
   viewer.addEventListener('pointer', soon)
   viewer.addEventListener('settings', soon)
+  viewer.movement.addEventListener('change', soon)  // under a pointer that rests, too
 }

@@ -4,6 +4,7 @@
 import { button, element, numberField, row, section } from './elements'
 import { exportMix } from './export_glb'
 import { notifyError } from './notice'
+import { percent } from './numbers'
 import { ask } from './program'
 import { LEAST_PICTURE, MOST_PICTURE } from './stage'
 import type { Viewer } from './viewer'
@@ -14,11 +15,15 @@ function download(blob: Blob, name: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10000)
 }
 
-/** A button that makes a file and hands it over; the user is told where that fails. */
-function saver(text: string, id: string, file: string, make: () => Promise<Blob>, title?: string): HTMLButtonElement {
+/** A button that makes a file and hands it over; the user is told how far that is, and where it fails. */
+function saver(text: string, id: string, file: string, make: (done: (share: number) => void) => Promise<Blob>, title?: string): HTMLButtonElement {
   const out = button(text, () => {
     out.disabled = true
-    make().then((blob) => download(blob, file)).catch(notifyError).finally(() => (out.disabled = false))
+    make((share) => (out.textContent = share < 1 ? percent(share) : text)).then((blob) => download(blob, file)).catch(notifyError)
+      .finally(() => {
+        out.disabled = false
+        out.textContent = text
+      })
   }, { id, title })
   return out
 }
@@ -55,7 +60,7 @@ export function savePanel(viewer: Viewer): HTMLElement {
   const sides = () => ({ least: LEAST_PICTURE, most: MOST_PICTURE, whole: true })
   const w = numberField('Width of the picture in pixels', 'picture-width', () => width, (v) => (width = v), sides)
   const h = numberField('Height of the picture in pixels', 'picture-height', () => height, (v) => (height = v), sides)
-  const picture = saver('Picture', 'picture', `${name}.png`, () => viewer.picture(width, height))
+  const picture = saver('Picture', 'picture', `${name}.png`, (done) => viewer.picture(width, height, done))
   const mix = saver('Model with this light', 'export', `${name}_lit.glb`, async () => exportMix(viewer), 'A .glb with plain vertex colours')
   const link = button('Link to here', async () => {
     const url = linkHere(viewer)

@@ -147,28 +147,34 @@ export class Stage {
     return caster.ray
   }
 
-  /** A picture of any size as PNG. */
-  async picture(pose: Pose, width: number, height: number): Promise<Blob> {
-    const ratio = this.renderer.getPixelRatio(), size = this.renderer.getSize(new THREE.Vector2())
+  /** A picture of any size as PNG. `drawn` follows each tile with the share that is done: it draws the page again,
+   * where the tile was drawn. */
+  async picture(pose: Pose, width: number, height: number, drawn: (share: number) => void): Promise<Blob> {
     const sheet = document.createElement('canvas')
     sheet.width = width
     sheet.height = height
     const context = sheet.getContext('2d')
-    this.renderer.setPixelRatio(1)
-    this.aim(pose, width / height)
     for (let y = 0; context && y < height; y += MOST_TILE)
       for (let x = 0; x < width; x += MOST_TILE) {
+        if (x + y > 0) await new Promise((resolve) => setTimeout(resolve))  // the page goes on meanwhile
         const w = Math.min(MOST_TILE, width - x), h = Math.min(MOST_TILE, height - y)
-        this.renderer.setSize(w, h, false)
-        this.camera.setViewOffset(width, height, x, y, w, h)
-        this.renderer.render(this.scene, this.camera)
+        this.drawTile(pose, width, height, x, y, w, h)
         context.drawImage(this.canvas, x, y)
+        this.resize()
+        drawn((y * width + h * (x + w)) / (width * height))
       }
-    this.camera.clearViewOffset()
-    this.renderer.setPixelRatio(ratio)
-    this.renderer.setSize(size.x, size.y, false)
     const blob = await new Promise<Blob | null>((done) => sheet.toBlob(done, 'image/png'))
     if (!blob) throw Error(`A picture of ${width} × ${height} pixels is more than this browser can make.`)
     return blob
+  }
+
+  /** A part of a picture, on the page's own canvas. */
+  private drawTile(pose: Pose, width: number, height: number, x: number, y: number, w: number, h: number): void {
+    this.renderer.setPixelRatio(1)
+    this.renderer.setSize(w, h, false)
+    this.aim(pose, width / height)
+    this.camera.setViewOffset(width, height, x, y, w, h)
+    this.renderer.render(this.scene, this.camera)
+    this.camera.clearViewOffset()
   }
 }

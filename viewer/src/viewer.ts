@@ -321,10 +321,11 @@ export class Viewer extends EventTarget {
     this.draw()
   }
 
-  picture(width: number, height: number): Promise<Blob> {
-    const blob = this.stage.picture(this.pose, width, height)
-    this.changed()  // it was drawn where the page is
-    return blob
+  picture(width: number, height: number, done: (share: number) => void = () => {}): Promise<Blob> {
+    return this.stage.picture(copyOf(this.pose), width, height, (share) => {
+      this.draw()
+      done(share)
+    })
   }
 
   /** Where the eye is, in the scene's own axes. */
