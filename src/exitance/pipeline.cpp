@@ -120,8 +120,8 @@ void require_polygons(const Scene& scene) {
         throw Error(Fault::bad_input, "the scene has no polygons, expected something to light");
 }
 
-/// What is demanded of a solver. It does what should lead to the error asked for; held-out points
-/// tell whether it did, and if not, more is demanded while that helps.
+/// What is demanded of a solver. It does what should lead to that error; held-out points tell
+/// whether it led to the error asked for, and if not, more is demanded while that helps.
 struct Demand {
     double error;
     double found = INFINITY;                  ///< by the held-out points, the last time
@@ -131,10 +131,12 @@ struct Demand {
     bool rise(const SolveOptions& options, const Radiosity& radiosity) {
         constexpr double least = 0.1, worthwhile = 0.9;
         if (!options.adaptive || options.unshot || options.next_shot) return false;
-        estimate = estimate_error(extract_solution(radiosity), options.seed);
+        estimate = estimate_error(extract_solution(radiosity), options.seed, options.error);
         if (estimate) estimate_now = estimate->rms;
         if (!estimate || estimate->rms <= options.error) return false;
-        if (estimate->rms > worthwhile * found || error <= least * options.error) return false;
+        const bool had_begun = error <= options.error;
+        if (had_begun && estimate->rms > worthwhile * found) return false;
+        if (error <= least * options.error) return false;
         found = estimate->rms;
         estimate.reset();
         error *= std::clamp(0.8 * options.error / found, 0.4, 0.8);
@@ -150,6 +152,10 @@ Counters counters_of(const Radiosity& radiosity) {
             {"elements", static_cast<double>(radiosity.mesh.elements().size())},
             {"bytes", static_cast<double>(radiosity.bytes())}};
 }
+
+// Gathering usually does better than what is demanded of it, and goes on from a rough solution at
+// little cost.
+constexpr double first_demand = 2;
 
 /// What every way to solve is given.
 struct Task {
@@ -174,20 +180,28 @@ std::function<bool()> interruption(const Task& task) {
     };
 }
 
-Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
-    const SolveOptions& options = task.options;
-    ShootingOptions shooting = shooting_options(options, task.size);
-    shooting.interrupted = interruption(task);
-    Shooting solver(radiosity, shooting);
-    const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, &solver);
-    Demand demand{options.error};
+// Runs an adaptive solver to the error asked for, beginning with a demand for `first`.
+template <class AdaptiveSolver>
+Demand run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, double first,
+                      const Shooting* shooting) {
+    const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, shooting);
+    Demand demand{first};
     const Observer tell = [&](Progress progress) {
         progress.error = demand.estimate_now;
         if (watch) watch(progress);
     };
     while (run(solver, task.stop, task.clock, tell) == Ended::converged &&
-           demand.rise(options, radiosity))
-        solver.demand(demand.error, min_area(options, demand.error, task.size));
+           demand.rise(task.options, radiosity))
+        solver.demand(demand.error, min_area(task.options, demand.error, task.size));
+    return demand;
+}
+
+Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
+    const SolveOptions& options = task.options;
+    ShootingOptions shooting = shooting_options(options, task.size);
+    shooting.interrupted = interruption(task);
+    Shooting solver(radiosity, shooting);
+    run_adaptively(solver, radiosity, task, options.error, &solver);
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, &solver);
     Done out{balance(radiosity, options.seed), {}};
     if (options.merge) merge_smooth(radiosity, solver.negligible());
@@ -199,24 +213,17 @@ Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
 
 Done gather_adaptively(Radiosity& radiosity, const Task& task) {
     const SolveOptions& options = task.options;
+    const double first = options.adaptive ? first_demand * options.error : options.error;
     GatheringOptions gathering;
-    gathering.error = options.error;
-    gathering.min_area = min_area(options, options.error, task.size);
+    gathering.error = first;
+    gathering.min_area = min_area(options, first, task.size);
     gathering.adaptive = options.adaptive;
     gathering.merge = options.merge;
     gathering.column.seed = options.seed;
     gathering.column.most_rays = 512;
     gathering.interrupted = interruption(task);
     Gathering solver(radiosity, gathering);
-    const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, nullptr);
-    Demand demand{options.error};
-    const Observer tell = [&](Progress progress) {
-        progress.error = demand.estimate_now;
-        if (watch) watch(progress);
-    };
-    while (run(solver, task.stop, task.clock, tell) == Ended::converged &&
-           demand.rise(options, radiosity))
-        solver.demand(demand.error, min_area(options, demand.error, task.size));
+    const Demand demand = run_adaptively(solver, radiosity, task, first, nullptr);
     solver.finish();
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
     Done out{balance(radiosity, options.seed), counters_of(radiosity)};
@@ -264,7 +271,8 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
 
     Solution solution = extract_solution(radiosity);
     solution.energy = done.energy;
-    solution.error = done.error ? done.error : estimate_error(solution, options.seed);
+    solution.error =
+        done.error ? done.error : estimate_error(solution, options.seed, options.error);
     solution.options = used(options);
     solution.counters = done.counters;
     return solution;

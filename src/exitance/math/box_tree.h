@@ -24,7 +24,12 @@ class BoxTree {
     /// the boxes alone.
     template <class Visit>
     void for_overlapping(const Box& box, const Visit& visit) const {
-        if (!nodes_.empty()) walk(0, box, visit);
+        for_accepted([&](const Box& other) { return overlap(other, box); }, visit);
+    }
+    /// For every box that `accept(const Box&)` takes; it takes all that contain one it takes.
+    template <class Accept, class Visit>
+    void for_accepted(const Accept& accept, const Visit& visit) const {
+        if (!nodes_.empty()) walk(0, accept, visit);
     }
 
   private:
@@ -68,17 +73,17 @@ class BoxTree {
         build(middle, end);
     }
 
-    template <class Visit>
-    void walk(std::size_t at, const Box& box, const Visit& visit) const {
+    template <class Accept, class Visit>
+    void walk(std::size_t at, const Accept& accept, const Visit& visit) const {
         const Node& node = nodes_[at];
-        if (!overlap(node.box, box)) return;
+        if (!accept(node.box)) return;
         if (node.right == 0) {
             for (std::uint32_t i = node.begin; i < node.end; ++i)
-                if (overlap(boxes_[order_[i]], box)) visit(order_[i]);
+                if (accept(boxes_[order_[i]])) visit(order_[i]);
             return;
         }
-        walk(at + 1, box, visit);
-        walk(node.right, box, visit);
+        walk(at + 1, accept, visit);
+        walk(node.right, accept, visit);
     }
 
     std::vector<Box> boxes_;

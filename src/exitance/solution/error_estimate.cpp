@@ -2,6 +2,7 @@
 #include "exitance/solution/error_estimate.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -16,7 +17,14 @@ namespace {
 
 // Enough for a relative standard error of the estimate near a tenth.
 constexpr std::size_t point_count = 512;
-constexpr GatherOptions gather_options{512, 256, 0};
+
+// A gather of 512 rays misses by half a percent or so, and by n^-3/4 of that; it may miss by as
+// much as the error that is looked for, whose square is averaged over hundreds of points.
+GatherOptions rays_to_tell(double about) {
+    const double rays = 512 * std::pow(0.01 / about, 4.0 / 3.0);
+    const auto hemisphere = static_cast<std::uint32_t>(std::clamp(rays, 128.0, 1024.0));
+    return {std::bit_ceil(hemisphere), std::max(64u, std::bit_ceil(hemisphere) / 2), 0};
+}
 
 struct HeldOut {
     std::vector<GatherPoint> points;
@@ -97,7 +105,8 @@ void drop_buried(const Surfaces& surfaces, HeldOut& held) {
 
 }  // namespace
 
-std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint64_t seed) {
+std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint64_t seed,
+                                            double about) {
     HeldOut held = hold_out(solution, hash_bits(seed, 0xe57u));
     if (held.points.empty()) return std::nullopt;
     const Surfaces surfaces(solution, Backs::black);
@@ -105,7 +114,7 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
     const std::size_t columns = solution.columns(), n = held.points.size();
     if (n == 0) return std::nullopt;
     std::vector<double> first(n * columns), second(n * columns), told(columns);
-    GatherOptions options = gather_options;
+    GatherOptions options = rays_to_tell(about);
     options.seed = hash_bits(seed, 1);
     gather(surfaces, held.points, first, options);
     options.seed = hash_bits(seed, 2);

@@ -16,14 +16,33 @@ namespace {
 // Of the tolerance: what merging may change.
 constexpr float merge_share = 0.25f;
 
+// Finding the obstacles of a scene takes some microseconds per polygon; where there are more, most
+// are parts of round bodies that stand in each other's way, and rays are needed all the same.
+constexpr std::size_t most_polygons_as_obstacles = 20000;
+
+std::optional<Obstacles> obstacles_of(const Radiosity& radiosity) {
+    const Scene& scene = radiosity.scene;
+    if (scene.polygons.size() > most_polygons_as_obstacles || radiosity.caster.has_glass())
+        return {};
+    std::vector<std::array<Vec3, 4>> corners;
+    for (const Polygon& polygon : scene.polygons) corners.push_back(scene.corners(polygon));
+    std::vector<std::span<const Vec3>> outlines;
+    for (std::size_t p = 0; p < corners.size(); ++p)
+        outlines.emplace_back(corners[p].data(), scene.polygons[p].size());
+    return Obstacles(outlines, radiosity.caster.middle());
+}
+
 }  // namespace
 
 Gathering::Gathering(Radiosity& radiosity, const GatheringOptions& options)
     : radiosity_(radiosity),
       options_(options),
       emitters_(emitters_of(radiosity)),
+      obstacles_(obstacles_of(radiosity)),
       direct_(0, radiosity.columns.count),
-      mean_irradiance_(radiosity.area() > 0 ? radiosity.emitted_flux() / radiosity.area() : 0.0) {}
+      mean_irradiance_(radiosity.area() > 0 ? radiosity.emitted_flux() / radiosity.area() : 0.0) {
+    if (obstacles_) options_.column.obstacles = &*obstacles_;
+}
 
 float Gathering::tolerance() const {
     return static_cast<float>(std::max(options_.error * mean_irradiance_, 1e-30));

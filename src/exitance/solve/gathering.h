@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "exitance/formfactor/obstacles.h"
 #include "exitance/mesh/field.h"
 #include "exitance/solve/cast_light.h"
 #include "exitance/solve/indirect.h"
@@ -69,6 +70,7 @@ class Gathering final : public Solver {
     GatheringOptions options_;
     Phase phase_ = Phase::direct;
     std::vector<FaceId> emitters_;
+    std::optional<Obstacles> obstacles_;  ///< if the scene is one of few polygons
     std::optional<ReflectedLight> reflected_;
     std::optional<IndirectLight> indirect_;
     VertexField direct_;  ///< D, of the first vertices, as far as it is known

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <tuple>
 
 #include "exitance/run/random.h"
 
@@ -16,7 +18,7 @@ constexpr float noise_share = 0.5f, threshold = 0.5f;
 // How many times the tolerance a small element may be wrong by.
 constexpr float most_tolerant = 8;
 // What noise explains is no reason to divide.
-constexpr float noise_deviations = 2;
+constexpr float noise_deviations = 1.5;
 // Vertices of small elements may be noisier, too, within reason.
 constexpr float most_noisy = 1.5f;
 // Patches are divided this often at most: what is reflected is known in cells of an eighth of a
@@ -87,6 +89,7 @@ void IndirectLight::make_room() {
     irradiance.resize_rows(count);
     variance.resize(count, 0.0f);
     known_.resize(count, 0);
+    inverse_distance_.resize(count, 0.0f);
 }
 
 void IndirectLight::set_tolerance(float tolerance, float min_area) {
@@ -112,59 +115,66 @@ bool IndirectLight::may_be_divided(const Element& element) const {
     return options_.adaptive && element.area > options_.min_area && element.level < most_levels;
 }
 
-bool IndirectLight::step() {
-    const Mesh& mesh = radiosity_.mesh;
-    if (open_.empty() || !gather_corners(open_)) return false;
-    std::vector<ElementId> tested, rough, next;
-    std::vector<Test> tests;
+// Which elements are to be tested, and which are rough without.
+void IndirectLight::sort_out(std::vector<ElementId>& tested, std::vector<ElementId>& rough) {
     for (const ElementId id : open_) {
-        const Element& element = mesh[id];
+        const Element& element = radiosity_.mesh[id];
         std::uint32_t exposed = 0;
         for (const VertexId v : element.corners()) exposed += radiosity_.exposed[v.index()] ? 1 : 0;
         if (exposed == element.count) {
-            if (!worth_testing(element)) {
-                closed_.push_back(id);
-                continue;
-            }
-            tested.push_back(id);
-            tests.push_back(test_of(element));
+            if (worth_testing(element))
+                tested.push_back(id);
+            else
+                closed_.push_back({id});
         } else if (!element.leaf()) {
             rough.push_back(id);
         } else if (exposed > 0) {
             // An object stands on the element: only small elements may be half covered.
             float high = 0;
             for (const VertexId v : element.corners()) high = std::max(high, light(v));
-            (high > tolerance(element) ? rough : closed_).push_back(id);
+            if (high > options_.tolerance)
+                rough.push_back(id);
+            else
+                closed_.push_back({id});
         }
     }
-    Receivers points;
+}
+
+bool IndirectLight::step() {
+    const Mesh& mesh = radiosity_.mesh;
+    const std::size_t stride = radiosity_.columns.stride;
+    if (open_.empty() || !gather_corners(open_)) return false;
+    std::vector<ElementId> tested, rough, next;
+    sort_out(tested, rough);
+    const Tests tests = tests_of(tested);
     std::vector<std::uint32_t> rays;
-    for (std::size_t i = 0; i < tests.size(); ++i) {
-        points.add(tests[i].point - radiosity_.caster.middle(), tests[i].normal, tests[i].key);
-        rays.push_back(rays_for(mesh[tested[i]]));
-    }
+    for (const Test& test : tests.at) rays.push_back(test.rays);
     Received received;
-    received.reset(points.size(), radiosity_.columns.stride);
-    std::vector<Surroundings> around(points.size());
-    rays_ += source_.gather(points, rays, received, around);
-    for (std::size_t i = 0; i < tests.size(); ++i) {
-        const Element& element = mesh[tested[i]];
-        const float deviation = source_.deviation(element.patch, rays[i]);
-        // What lies there buried says nothing of the light.
-        const bool covered = around[i].backs > 0.5f;
-        if (covered || fails(element, tests[i].expected, received.light[i], deviation))
-            rough.push_back(tested[i]);
+    received.reset(tests.points.size(), stride);
+    std::vector<Surroundings> around(tests.points.size());
+    rays_ += source_.gather(tests.points, rays, received, around);
+
+    for (std::size_t i = 0; i < tests.expected.size();) {
+        const ElementId id = tests.expected[i].element;
+        bool smooth = true;
+        std::span<const float> middle;
+        for (; i < tests.expected.size() && tests.expected[i].element == id; ++i) {
+            const Expected& expected = tests.expected[i];
+            // What lies there buried says nothing of the light.
+            smooth = smooth && !(around[expected.test].backs > 0.5f) &&
+                     !fails(expected, tests.at[expected.test], received.light[expected.test]);
+            if (expected.middle) middle = received.row(expected.test, stride);
+        }
+        if (smooth)
+            close(id, middle);
         else
-            closed_.push_back(tested[i]);
+            rough.push_back(id);
     }
     divide(rough);
-    for (std::size_t i = 0; i < tests.size(); ++i) {
-        const Element& element = mesh[tested[i]];
-        const auto v =
-            mesh.find_vertex(mesh.face_of(element), tests[i].place[0], tests[i].place[1]);
-        if (v)
-            know(*v, received.row(i, radiosity_.columns.stride),
-                 source_.deviation(element.patch, rays[i]));
+    for (std::size_t i = 0; i < tests.at.size(); ++i) {
+        const Test& test = tests.at[i];
+        const auto v = mesh.find_vertex(mesh[test.face], test.place[0], test.place[1]);
+        if (v) know(*v, received.row(i, stride), test.deviation, around[i].inverse_distance);
     }
     for (const ElementId id : rough) {
         if (mesh[id].leaf()) continue;
@@ -175,11 +185,13 @@ bool IndirectLight::step() {
     return !open_.empty();
 }
 
-void IndirectLight::know(VertexId v, std::span<const float> row, float deviation) {
+void IndirectLight::know(VertexId v, std::span<const float> row, float deviation,
+                         float inverse_distance) {
     if (known_[v.index()] || !radiosity_.exposed[v.index()]) return;
     known_[v.index()] = 1;
     std::copy(row.begin(), row.end(), irradiance[v].begin());
     variance[v.index()] = deviation * deviation;
+    inverse_distance_[v.index()] = inverse_distance;
 }
 
 bool IndirectLight::gather_corners(const std::vector<ElementId>& elements) {
@@ -210,7 +222,7 @@ bool IndirectLight::gather_corners(const std::vector<ElementId>& elements) {
         std::vector<Surroundings> around(receivers.size());
         rays_ += source_.gather(receivers, rays, received, around);
         for (std::size_t i = 0; i < fresh.size(); ++i)
-            know(fresh[i], received.row(i, stride), deviation[i]);
+            know(fresh[i], received.row(i, stride), deviation[i], around[i].inverse_distance);
         if (options_.interrupted && options_.interrupted()) return false;
     }
     return true;
@@ -222,44 +234,68 @@ bool IndirectLight::worth_testing(const Element& element) const {
     return options_.adaptive && element.area > options_.min_area && element.level < Mesh::max_level;
 }
 
-// The centre of a quad, the middle of the longest side of a triangle, which two triangles share
-// where a quad was cut.
-IndirectLight::Test IndirectLight::test_of(const Element& element) const {
-    const Mesh& mesh = radiosity_.mesh;
-    const auto middle = Mesh::midpoints(element);
-    std::uint32_t which = 4;
-    if (element.count == 3) {
-        const auto c = mesh.corners(element);
-        double longest = 0;
-        for (std::uint32_t i = 0; i < 3; ++i)
-            if (const double side = length(c[(i + 1) % 3] - c[i]); side > longest)
-                longest = side, which = i;
-    }
-    Test test;
-    test.place = middle.at[which];
-    const auto [u, v] = test.place;
-    test.point = mesh.sample_point(element, u, v);
-    test.normal = mesh.normal(mesh.face_of(element), u, v);
-    std::uint64_t key = 0x7e57;
-    if (element.count == 3) {
-        const VertexId a = element.vertices[which], b = element.vertices[(which + 1) % 3];
-        test.expected = 0.5f * (light(a) + light(b));
-        key = hash_bits(key, std::min(a, b).value, std::max(a, b).value);
-    } else {
-        for (const VertexId corner : element.corners()) test.expected += 0.25f * light(corner);
-        key = hash_bits(key, element.vertices[0].value, element.vertices[2].value);
-    }
-    test.key = static_cast<std::uint32_t>(key);
-    return test;
+// Light bends over lengths like the mean distance of what is seen, the harmonic one (Ward et al.
+// 1988): where an element is larger, something touches it, and it is not taken for small.
+bool IndirectLight::touched(const Element& element) const {
+    float most = 0;
+    for (const VertexId v : element.corners()) most = std::max(most, inverse_distance_[v.index()]);
+    return std::sqrt(element.area) * most > 1;
 }
 
-bool IndirectLight::fails(const Element& element, float expected, float found,
-                          float deviation) const {
-    float noise = 0;
-    for (const VertexId v : element.corners()) noise += variance[v.index()];
-    const auto corners = static_cast<float>(element.count);
-    noise = noise_deviations * std::sqrt(deviation * deviation + noise / (corners * corners));
-    return std::abs(found - expected) - noise > threshold * tolerance(element);
+// The centre of a quad, the middle of the longest side of a triangle, which two triangles share
+// where a quad was cut; of what is touched all sides.
+IndirectLight::Tests IndirectLight::tests_of(const std::vector<ElementId>& elements) const {
+    const Mesh& mesh = radiosity_.mesh;
+    Tests out;
+    std::map<std::tuple<std::uint32_t, std::int32_t, std::int32_t>, std::uint32_t> places;
+    for (const ElementId id : elements) {
+        const Element& element = mesh[id];
+        const FaceId face = mesh[element.patch].face;
+        const auto middle = Mesh::midpoints(element);
+        std::uint32_t which = 4;
+        if (element.count == 3) {
+            const auto c = mesh.corners(element);
+            double longest = 0;
+            for (std::uint32_t i = 0; i < 3; ++i)
+                if (const double side = length(c[(i + 1) % 3] - c[i]); side > longest)
+                    longest = side, which = i;
+        }
+        const bool all = touched(element);
+        for (std::uint32_t i = 0; i < middle.count; ++i) {
+            if (i != which && !all) continue;
+            const auto [u, v] = middle.at[i];
+            Expected expected{id};
+            const std::uint32_t from = i < element.count ? i : 0;
+            const std::uint32_t count = i < element.count ? 2 : element.count;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                const VertexId corner = element.vertices[(from + k) % element.count];
+                const float share = 1.0f / static_cast<float>(count);
+                expected.light += share * light(corner);
+                expected.variance += share * share * variance[corner.index()];
+            }
+            expected.middle = i >= element.count;
+            const auto [place, fresh] =
+                places.insert({{face.value, u, v}, static_cast<std::uint32_t>(out.points.size())});
+            expected.test = place->second;
+            out.expected.push_back(expected);
+            if (!fresh) continue;
+            out.points.add(mesh.sample_point(element, u, v) - radiosity_.caster.middle(),
+                           mesh.normal(mesh[face], u, v),
+                           static_cast<std::uint32_t>(hash_bits(0x7e57, face.value, u, v)));
+            const std::uint32_t rays = rays_for(element);
+            out.at.push_back({face, {u, v}, rays, source_.deviation(element.patch, rays)});
+        }
+    }
+    return out;
+}
+
+bool IndirectLight::fails(const Expected& expected, const Test& test, float found) const {
+    const Element& element = radiosity_.mesh[expected.element];
+    const float noise =
+        noise_deviations * noise_deviations * (test.deviation * test.deviation + expected.variance);
+    const float departure = found - expected.light;
+    const float allowed = threshold * (touched(element) ? options_.tolerance : tolerance(element));
+    return departure * departure > allowed * allowed + noise;
 }
 
 void IndirectLight::divide(const std::vector<ElementId>& elements) {
@@ -293,9 +329,32 @@ void IndirectLight::divide(const std::vector<ElementId>& elements) {
     }
 }
 
+// The four sides of a quad stay straight, and so do those of a triangle that is no half of one.
+void IndirectLight::close(ElementId id, std::span<const float> middle) {
+    const Element& element = radiosity_.mesh[id];
+    if (element.leaf()) return;
+    Closed closed{id};
+    if (!middle.empty()) {
+        const std::size_t stride = middle.size();
+        closed.bend = static_cast<std::uint32_t>(bends_.size() / stride);
+        for (std::size_t c = 0; c < stride; ++c) {
+            float mean = 0;
+            for (const VertexId v : element.corners()) mean += 0.25f * irradiance[v][c];
+            bends_.push_back(middle[c] - mean);
+        }
+    }
+    closed_.push_back(closed);
+}
+
 void IndirectLight::finish() {
-    for (const ElementId id : closed_) interpolate_in(id);
-    for (const ElementId id : open_) interpolate_in(id);
+    const std::size_t stride = radiosity_.columns.stride;
+    for (const Closed& closed : closed_) {
+        std::span<const float> bend;
+        if (closed.bend != Closed::none)
+            bend = std::span(bends_).subspan(closed.bend * stride, stride);
+        interpolate_in(closed.element, bend);
+    }
+    for (const ElementId id : open_) interpolate_in(id, {});
     if (options_.interrupted && options_.interrupted()) return;
     // What dividing neighbours brought to elements without light at all corners.
     std::vector<ElementId> rest;
@@ -323,7 +382,8 @@ void IndirectLight::interpolate(const Element& whole, const std::array<std::int3
     }
 }
 
-void IndirectLight::interpolate_in(ElementId id) {
+// A bend is a bubble over a quad, 16 s (1 - s) t (1 - t) of it.
+void IndirectLight::interpolate_in(ElementId id, std::span<const float> bend) {
     const Mesh& mesh = radiosity_.mesh;
     const Element& whole = mesh[id];
     if (whole.leaf()) return;
@@ -337,6 +397,12 @@ void IndirectLight::interpolate_in(ElementId id) {
             if (known_[v.index()] || !radiosity_.exposed[v.index()]) continue;
             known_[v.index()] = 1;
             interpolate(whole, places[i], v);
+            if (bend.empty()) continue;
+            const auto w = weights_at(whole, places[i][0], places[i][1]);
+            const float bubble = 16 * (w[0] + w[3]) * (w[1] + w[2]) * (w[0] + w[1]) * (w[2] + w[3]);
+            const auto row = irradiance[v];
+            for (std::size_t c = 0; c < bend.size(); ++c)
+                row[c] = std::max(0.0f, row[c] + bubble * bend[c]);
         }
     });
 }

@@ -47,26 +47,40 @@ class IndirectLight {
     VertexField irradiance;       ///< per vertex
     std::vector<float> variance;  ///< per vertex: of its luminance
     std::uint64_t rays() const { return rays_; }
-    std::size_t elements_left() const { return open_.size(); }
 
   private:
-    /// A place in the middle of an element that tells whether it is smooth.
+    /// A place inside an element or on its sides that tells whether it is smooth.
     struct Test {
-        Vec3 point, normal;
-        std::uint32_t key = 0;
+        FaceId face;
         std::array<std::int32_t, 2> place;
-        float expected = 0;
+        std::uint32_t rays = 0;
+        float deviation = 0;
+    };
+    /// What the corners of an element say of a place that is tested.
+    struct Expected {
+        ElementId element;
+        std::uint32_t test = 0;
+        float light = 0, variance = 0;
+        bool middle = false;  ///< of a quad, as against on a side
+    };
+    struct Tests {
+        Receivers points;
+        std::vector<Test> at;  ///< one per point
+        std::vector<Expected> expected;
     };
     void spread_patches(std::size_t first);
     void make_room();
-    void know(VertexId v, std::span<const float> row, float deviation);
+    void know(VertexId v, std::span<const float> row, float deviation, float inverse_distance);
     bool gather_corners(const std::vector<ElementId>& elements);
+    void sort_out(std::vector<ElementId>& tested, std::vector<ElementId>& rough);
+    Tests tests_of(const std::vector<ElementId>& elements) const;
     bool worth_testing(const Element& element) const;
-    Test test_of(const Element& element) const;
-    bool fails(const Element& element, float expected, float found, float deviation) const;
+    bool touched(const Element& element) const;
+    bool fails(const Expected& expected, const Test& test, float found) const;
+    void close(ElementId id, std::span<const float> middle);
     void divide(const std::vector<ElementId>& elements);
     void interpolate(const Element& whole, const std::array<std::int32_t, 2>& place, VertexId to);
-    void interpolate_in(ElementId id);
+    void interpolate_in(ElementId id, std::span<const float> bend);
     float light(VertexId v) const;
     float tolerance(const Element& element) const;
     std::uint32_t rays_for(const Element& element) const;
@@ -75,9 +89,18 @@ class IndirectLight {
     Radiosity& radiosity_;
     ReflectedLight& source_;
     IndirectOptions options_;
-    std::vector<ElementId> open_;    ///< to be looked at; their corners have light
-    std::vector<ElementId> closed_;  ///< smooth
-    std::vector<char> known_;        ///< per vertex: gathered
+    std::vector<ElementId> open_;  ///< to be looked at; their corners have light
+    /// Smooth. In the middle of one that was tested light is above what its corners say by a row
+    /// of `bends_`.
+    struct Closed {
+        ElementId element;
+        std::uint32_t bend = none;
+        static constexpr std::uint32_t none = 0xffffffffU;
+    };
+    std::vector<Closed> closed_;
+    std::vector<float> bends_;             ///< rows of columns
+    std::vector<char> known_;              ///< per vertex: gathered
+    std::vector<float> inverse_distance_;  ///< per gathered vertex: mean over its rays [1/m]
     std::uint64_t rays_ = 0;
 };
 

@@ -24,6 +24,9 @@ std::uint32_t balance_rays(double error) {
 // Cells of a patch, along a side. What varies faster than that is far smaller than the patch, and
 // seen as a whole from everywhere but itself.
 constexpr std::uint32_t most_steps = 8;
+// A leaf is uneven if the light of its corners differs by this share; it is divided so often.
+constexpr float uneven = 0.05f;
+constexpr std::uint32_t levels_of_uneven = 2;
 // Where rows are long, for many groups of light, cells take no more than this.
 constexpr std::size_t most_cell_bytes = std::size_t{256} << 20;
 
@@ -62,8 +65,8 @@ ReflectedLight::ReflectedLight(Radiosity& radiosity, const ReflectedLightOptions
       scene_{radiosity.mesh, radiosity.caster, radiosity.owners, radiosity.two_sided()},
       rows_(patch_rows(radiosity)),
       caster_(scene_, rows_, balance_rays(options.error), hash_bits(options.seed, 1)) {
+    divide_into_cells();
     balance();
-    find_cells();
 }
 
 // R = ρ (D + F R) on the patches, as exchange areas in a sparse matrix.
@@ -94,25 +97,54 @@ void ReflectedLight::balance() {
             });
         },
         64);
-    ExchangeAreas areas = cast_exchange_areas(caster_, rows_, [&](std::uint64_t) {
-        return !(options_.interrupted && options_.interrupted());
-    });
+    // Patches exchange light as if each sent it evenly. What those that do not send differently is
+    // seen by the rays: it is added to what patches receive, and goes on from there.
+    RowField not_even(n, columns);
+    std::vector<std::uint32_t> looks(n, 0);
+    fill_cells();
+    const auto look = [&](std::size_t i, const ElementCaster::Ends& ends) {
+        const auto more = not_even[RowId(i)];
+        for (std::uint32_t k = 0; k < ends.count; ++k) {
+            if (cells_[ends.row[k]].steps == 1) continue;
+            const float* here = exitance_at(ends.row[k], ends.u[k], ends.v[k]);
+            const auto D = system.direct[RowId(ends.row[k])], rho = system.rho[RowId(ends.row[k])];
+            for (std::size_t c = 0; c < stride; ++c)
+                more[c] += ends.rays[k] * (here[c] - rho[c] * D[c]);
+        }
+        ++looks[i];
+    };
+    ExchangeAreas areas = cast_exchange_areas(
+        caster_, rows_,
+        [&](std::uint64_t) { return !(options_.interrupted && options_.interrupted()); }, look,
+        mesh);
+    system.area = rows_.area;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (looks[i] == 0) continue;
+        const auto more = not_even[RowId(i)], D = system.direct[RowId(i)];
+        for (std::size_t c = 0; c < stride; ++c) {
+            more[c] /= static_cast<float>(looks[i] * RayPacket::width);
+            D[c] += more[c];
+        }
+    }
     rays_ += std::uint64_t{n} * caster_.rays();
     SparseTransport transport(std::move(areas), rows_.area, 0.0);
     ElementSolverOptions solving;
-    solving.error = options_.error;
+    solving.error = 1e-6;
     const auto solver = element_method("jacobi").make(system, transport, solving);
     run(*solver, Stop{}, Stopwatch(), {});
     const RowField& R = solver->reflected();
     irradiance_ = RowField(n, columns);
     transport.gather(R, irradiance_);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t c = 0; c < stride; ++c) irradiance_[RowId(i)][c] += not_even[RowId(i)][c];
+    fill_cells();
 
     // σ² = F R² − (F R)².
     double mean_square = 0, area = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const auto rho = system.rho[RowId(i)], D = system.direct[RowId(i)];
         std::vector<float> first(stride);
-        for (std::size_t c = 0; c < stride; ++c) first[c] = rho[c] * D[c];
+        for (std::size_t c = 0; c < stride; ++c) first[c] = rho[c] * (D[c] - not_even[RowId(i)][c]);
         const float all = radiosity_.columns.luminance(R[RowId(i)]);
         const float of_direct = radiosity_.columns.luminance(first);
         square[RowId(i)][0] += all * all - of_direct * of_direct;
@@ -140,7 +172,8 @@ std::size_t ReflectedLight::Cells::at(float x, float y) const {
     return first + 2 * (j * steps + i) + (upper ? 1 : 0);
 }
 
-// Calls `visit(cell)` for those whose middles lie in `leaf`, or for the one its own middle lies in.
+// Calls `visit(cell, s, t)` for those whose middles lie in `leaf`, or for the one its own middle
+// lies in; (s, t): where that is, in sides of the leaf.
 template <class Visit>
 void ReflectedLight::Cells::visit_those_of(const Element& leaf, const Element& root,
                                            const Visit& visit) const {
@@ -150,68 +183,115 @@ void ReflectedLight::Cells::visit_those_of(const Element& leaf, const Element& r
     const float h = step * static_cast<float>(leaf.size);  // < 0: a triangle that points back
     if (std::abs(h) < 1.0f || steps == 1) {
         const float middle = triangle ? 1.0f / 3 : 0.5f;
-        return visit(at(x + middle * h, y + middle * h));
+        return visit(at(x + middle * h, y + middle * h), middle, middle);
     }
     const float u_begin = std::round(std::min(x, x + h)), v_begin = std::round(std::min(y, y + h));
     for (float v = v_begin; v < v_begin + std::abs(h) - 0.5f; ++v)
         for (float u = u_begin; u < u_begin + std::abs(h) - 0.5f; ++u) {
             if (!triangle) {
-                visit(at(u + 0.5f, v + 0.5f));
+                visit(at(u + 0.5f, v + 0.5f), (u + 0.5f - x) / h, (v + 0.5f - y) / h);
                 continue;
             }
-            for (const float third : {1.0f / 3, 2.0f / 3})
-                if ((u + third - x) / h + (v + third - y) / h < 1.0f)
-                    visit(at(u + third, v + third));
+            for (const float third : {1.0f / 3, 2.0f / 3}) {
+                const float s = (u + third - x) / h, t = (v + third - y) / h;
+                if (s + t < 1.0f) visit(at(u + third, v + third), s, t);
+            }
         }
 }
 
-// R = ρ (D + F R), D and ρ of the leaves, F R of their patch.
-void ReflectedLight::find_cells() {
+// As fine as the mesh; where direct light differs within a large leaf, as fine as that needs.
+void ReflectedLight::divide_into_cells() {
     const Mesh& mesh = radiosity_.mesh;
-    const std::size_t n = rows_.size(), stride = radiosity_.columns.stride;
-    const double room = double(most_cell_bytes) / double(sizeof(float) * stride * (n + 1));
+    const std::size_t stride = radiosity_.columns.stride;
+    const double room =
+        double(most_cell_bytes) / double(sizeof(float) * stride * (rows_.size() + 1));
     const double most = std::clamp(std::sqrt(room / 2), 1.0, double(most_steps));
     std::size_t count = 0;
     for (const ElementId root : rows_.elements) {
-        std::uint32_t deepest = 0;
+        std::uint32_t levels = 0;
         mesh.for_leaves(root, [&](ElementId id) {
-            deepest = std::max<std::uint32_t>(deepest, mesh[id].level);
+            const Element& leaf = mesh[id];
+            levels = std::max<std::uint32_t>(levels, leaf.level);
+            float low = INFINITY, high = 0;
+            for (const VertexId v : leaf.corners()) {
+                const float light = radiosity_.columns.luminance(radiosity_.irradiance[v]);
+                low = std::min(low, light), high = std::max(high, light);
+            }
+            if (high - low > uneven * high)
+                levels = std::max<std::uint32_t>(levels, leaf.level + levels_of_uneven);
         });
         Cells cells;
         cells.first = static_cast<std::uint32_t>(count);
-        cells.steps = std::min(std::bit_floor(static_cast<std::uint32_t>(most)), 1u << deepest);
+        cells.steps = std::min(std::bit_floor(static_cast<std::uint32_t>(most)), 1u << levels);
         cells.triangle = mesh[root].count == 3;
         count += std::size_t{cells.steps} * cells.steps * (cells.triangle ? 2 : 1);
         cells_.push_back(cells);
     }
-    exitance_.assign(count * stride, 0.0f);
-    std::vector<float> area(count, 0.0f);
+    exitance_.resize(count * stride);
+}
+
+// R = ρ (D + F R), D and ρ of the leaves, F R of their patch if it is known.
+void ReflectedLight::fill_cells() {
+    const Mesh& mesh = radiosity_.mesh;
+    const std::size_t stride = radiosity_.columns.stride;
+    const bool balanced = irradiance_.rows() > 0;
+    std::fill(exitance_.begin(), exitance_.end(), 0.0f);
+    std::vector<float> area(exitance_.size() / stride, 0.0f);
     parallel_for(
-        n,
+        rows_.size(),
         [&](std::size_t i) {
             const Element& root = mesh[rows_.elements[i]];
-            std::vector<float> R(stride);
+            std::vector<float> D(stride), slope_s(stride), slope_t(stride);
             mesh.for_leaves(rows_.elements[i], [&](ElementId id) {
                 const Element& leaf = mesh[id];
-                std::fill(R.begin(), R.end(), 0.0f);
+                const auto shot = radiosity_.shot[id];
+                std::fill(shot.begin(), shot.end(), 0.0f);
                 if (radiosity_.open_share(leaf) > 0) {
-                    const std::span<const float> H = irradiance_[RowId(i)];
-                    const auto rho = radiosity_.rho(id);
-                    radiosity_.mean_irradiance(id, R);
-                    for (std::size_t c = 0; c < stride; ++c) R[c] = rho[c] * (R[c] + H[c]);
+                    radiosity_.mean_irradiance(id, D);
+                    find_slopes(leaf, slope_s, slope_t);
                 }
-                std::copy(R.begin(), R.end(), radiosity_.shot[id].begin());
-                cells_[i].visit_those_of(leaf, root, [&](std::size_t cell) {
+                const bool open = radiosity_.open_share(leaf) > 0;
+                const auto rho = radiosity_.rho(id);
+                const auto reflected = [&](std::size_t c, float s, float t) {
+                    const float H = balanced ? irradiance_[RowId(i)][c] : 0.0f;
+                    return rho[c] * (D[c] + s * slope_s[c] + t * slope_t[c] + H);
+                };
+                for (std::size_t c = 0; open && c < stride; ++c) shot[c] = reflected(c, 0, 0);
+                const float middle = leaf.count == 3 ? 1.0f / 3 : 0.5f;
+                cells_[i].visit_those_of(leaf, root, [&](std::size_t cell, float s, float t) {
                     area[cell] += leaf.area;
-                    for (std::size_t c = 0; c < stride; ++c)
-                        exitance_[cell * stride + c] += leaf.area * R[c];
+                    for (std::size_t c = 0; open && c < stride; ++c)
+                        exitance_[cell * stride + c] +=
+                            leaf.area * reflected(c, s - middle, t - middle);
                 });
             });
+            const Cells& own = cells_[i];
+            const std::size_t end =
+                own.first + std::size_t{own.steps} * own.steps * (own.triangle ? 2 : 1);
+            for (std::size_t cell = own.first; cell < end; ++cell)
+                for (std::size_t c = 0; area[cell] > 0 && c < stride; ++c)
+                    exitance_[cell * stride + c] /= area[cell];
         },
         64);
-    for (std::size_t cell = 0; cell < count; ++cell)
-        for (std::size_t c = 0; area[cell] > 0 && c < stride; ++c)
-            exitance_[cell * stride + c] /= area[cell];
+}
+
+// How direct light rises along the two sides of a leaf.
+void ReflectedLight::find_slopes(const Element& leaf, std::span<float> s,
+                                 std::span<float> t) const {
+    std::fill(s.begin(), s.end(), 0.0f);
+    std::fill(t.begin(), t.end(), 0.0f);
+    for (const VertexId v : leaf.corners())
+        if (!radiosity_.exposed[v.index()]) return;
+    const auto H = [&](std::uint32_t corner) {
+        return radiosity_.irradiance[leaf.vertices[corner]];
+    };
+    for (std::size_t c = 0; c < s.size(); ++c) {
+        if (leaf.count == 3)
+            s[c] = H(1)[c] - H(0)[c], t[c] = H(2)[c] - H(0)[c];
+        else
+            s[c] = 0.5f * (H(1)[c] + H(2)[c] - H(0)[c] - H(3)[c]),
+            t[c] = 0.5f * (H(3)[c] + H(2)[c] - H(0)[c] - H(1)[c]);
+    }
 }
 
 const float* ReflectedLight::exitance_at(std::uint32_t patch, float u, float v) const {

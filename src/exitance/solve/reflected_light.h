@@ -55,8 +55,9 @@ class ReflectedLight {
 
   private:
     void balance();
-    void find_cells();
-    void find_spread();
+    void divide_into_cells();
+    void fill_cells();
+    void find_slopes(const Element& leaf, std::span<float> s, std::span<float> t) const;
     const float* exitance_at(std::uint32_t patch, float u, float v) const;
 
     Radiosity& radiosity_;

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "exitance/formfactor/obstacles.h"
 #include "exitance/formfactor/point_polygon_block.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
@@ -48,6 +49,15 @@ std::uint64_t compute_column(const RayCaster& caster, const Source& source, floa
         if (!options.occlusion && !disk) return;
 
         RayBudget budget = budget_for(factors.data(), block.size, brightness, options);
+        if (options.obstacles && !disk && source.covers.empty()) {
+            ViewsOfSource views;
+            view_source(*options.obstacles, source, block, budget.probe, caster.clearance(), views);
+            for (std::size_t r = 0; r < block.size; ++r) {
+                if (!views.known[r]) continue;
+                entries[begin + r].visible = views.visible[r];
+                budget.probe[r] = 0;
+            }
+        }
         // A disc stands for its share of the source only from afar: near sources need more of them.
         for (std::size_t r = 0; disk && r < block.size; ++r) {
             if (!budget.probe[r]) continue;

@@ -11,6 +11,8 @@
 
 namespace exitance {
 
+class Obstacles;
+
 enum class PointFactor {
     lambert,  ///< exact factor × sampled visible fraction
     disk      ///< Wallace et al. 1989: the source as discs around sampled places
@@ -24,6 +26,8 @@ struct ColumnOptions {
     int most_probes = 64;
     int most_rays = 256;  ///< to a source from one receiver, at most RayBudget::largest
     std::uint64_t seed = 0;
+    /// If there: past these the exact factor is seen from flat surfaces, where they are few.
+    const Obstacles* obstacles = nullptr;
 };
 
 /// Per receiver.

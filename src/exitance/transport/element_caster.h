@@ -29,12 +29,19 @@ class ElementCaster {
     /// stand under other things, or are another polygon's, cast none. Returns the number cast.
     template <class Visit>
     std::uint32_t cast_row(std::size_t i, const Visit& visit) const {
+        return cast_places(i, [&](const Ends& ends) {
+            for (std::uint32_t k = 0; k < ends.count; ++k) visit(ends.row[k], ends.rays[k]);
+        });
+    }
+    /// The same: `visit(ends)` for every place, sixteen rays.
+    template <class Visit>
+    std::uint32_t cast_places(std::size_t i, const Visit& visit) const {
         std::uint32_t cast = 0;
         Ends ends;
         for (std::uint32_t place = 0; place < places_; ++place) {
             if (!cast_place(i, place, ends)) continue;
             cast += RayPacket::width;
-            for (std::uint32_t k = 0; k < ends.count; ++k) visit(ends.row[k], ends.rays[k]);
+            visit(ends);
         }
         return cast;
     }

@@ -97,43 +97,77 @@ void scale_to(Triangle& triangle, const std::vector<double>& wanted) {
             triangle.areas[i][k] *= static_cast<float>(d[i] * d[triangle.columns[i][k]]);
 }
 
-}  // namespace
+/// What the rays of all rows have met.
+struct Cast {
+    std::vector<Hits> hits;
+    std::vector<double> met;          ///< rays of a row that met anything
+    std::vector<std::uint32_t> rays;  ///< of each row, from its open places
+    bool whole = false;               ///< not interrupted
 
-ExchangeAreas cast_exchange_areas(const ElementCaster& caster, const ElementRows& rows,
-                                  const std::function<bool(std::uint64_t rays)>& go_on) {
-    const std::size_t n = rows.size();
-    ExchangeAreas out(n);
-    std::vector<Hits> hits(n);
-    std::vector<double> area_per_ray(n, 0.0), wanted(n, 0.0);
-    std::uint64_t rays = 0;
-    for (std::size_t first = 0; first < n; first += rows_at_once) {
-        if (!go_on(rays)) return out;
-        const std::size_t count = std::min(rows_at_once, n - first);
-        parallel_for(
-            count,
-            [&](std::size_t k) {
-                const std::size_t i = first + k;
-                if (!(rows.area[i] > 0)) return;
-                double met = 0;
-                const std::uint32_t cast = caster.cast_row(i, [&](std::uint32_t row, float share) {
-                    if (!(rows.area[row] > 0)) return;
-                    hits[i].push_back({row, share});
-                    met += double(share);
-                });
-                if (cast == 0) return;
-                area_per_ray[i] = double(rows.area[i]) / cast;
-                wanted[i] = area_per_ray[i] * met;
-                add_up(hits[i]);
-            },
-            8);
-        rays += std::uint64_t{caster.rays()} * count;
+    Cast(const ElementCaster& caster, const ElementRows& rows,
+         const std::function<bool(std::uint64_t rays)>& go_on, const LookAtEnds& look)
+        : hits(rows.size()), met(rows.size(), 0.0), rays(rows.size(), 0) {
+        std::uint64_t so_far = 0;
+        for (std::size_t first = 0; first < rows.size(); first += rows_at_once) {
+            if (!go_on(so_far)) return;
+            const std::size_t count = std::min(rows_at_once, rows.size() - first);
+            parallel_for(
+                count,
+                [&](std::size_t k) {
+                    const std::size_t i = first + k;
+                    if (!(rows.area[i] > 0)) return;
+                    rays[i] = caster.cast_places(i, [&](const ElementCaster::Ends& ends) {
+                        for (std::uint32_t e = 0; e < ends.count; ++e) {
+                            if (!(rows.area[ends.row[e]] > 0)) continue;
+                            hits[i].push_back({ends.row[e], ends.rays[e]});
+                            met[i] += double(ends.rays[e]);
+                        }
+                        if (look) look(i, ends);
+                    });
+                    add_up(hits[i]);
+                },
+                8);
+            so_far += std::uint64_t{caster.rays()} * count;
+        }
+        go_on(so_far);
+        whole = true;
     }
-    go_on(rays);
-    Triangle triangle = merge(hits, area_per_ray);
+};
+
+ExchangeAreas exchange_areas(Cast& cast, std::span<const float> area) {
+    const std::size_t n = area.size();
+    ExchangeAreas out(n);
+    if (!cast.whole) return out;
+    std::vector<double> area_per_ray(n, 0.0), wanted(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (cast.rays[i] == 0) continue;
+        area_per_ray[i] = double(area[i]) / cast.rays[i];
+        wanted[i] = area_per_ray[i] * cast.met[i];
+    }
+    Triangle triangle = merge(cast.hits, area_per_ray);
     scale_to(triangle, wanted);
     for (std::size_t i = 0; i < n; ++i)
         out.set_row(i, std::move(triangle.columns[i]), std::move(triangle.areas[i]));
     return out;
+}
+
+}  // namespace
+
+ExchangeAreas cast_exchange_areas(const ElementCaster& caster, const ElementRows& rows,
+                                  const std::function<bool(std::uint64_t rays)>& go_on) {
+    Cast cast(caster, rows, go_on, {});
+    return exchange_areas(cast, rows.area);
+}
+
+ExchangeAreas cast_exchange_areas(const ElementCaster& caster, ElementRows& rows,
+                                  const std::function<bool(std::uint64_t rays)>& go_on,
+                                  const LookAtEnds& look, const Mesh& mesh) {
+    Cast cast(caster, rows, go_on, look);
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (rows.area[i] > 0)
+            rows.area[i] = mesh[rows.elements[i]].area * static_cast<float>(cast.rays[i]) /
+                           static_cast<float>(caster.rays());
+    return exchange_areas(cast, rows.area);
 }
 
 }  // namespace exitance

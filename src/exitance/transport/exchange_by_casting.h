@@ -17,4 +17,12 @@ namespace exitance {
 ExchangeAreas cast_exchange_areas(const ElementCaster& caster, const ElementRows& rows,
                                   const std::function<bool(std::uint64_t rays)>& go_on);
 
+/// The same, and `look(i, ends)` sees the ends of sixteen rays from every place of row i that is
+/// open; rows are looked at in parallel. The areas of rows become what is open of them by those
+/// places.
+using LookAtEnds = std::function<void(std::size_t row, const ElementCaster::Ends& ends)>;
+ExchangeAreas cast_exchange_areas(const ElementCaster& caster, ElementRows& rows,
+                                  const std::function<bool(std::uint64_t rays)>& go_on,
+                                  const LookAtEnds& look, const Mesh& mesh);
+
 }  // namespace exitance
