@@ -235,8 +235,11 @@ Done gather_adaptively(Radiosity& radiosity, const Task& task) {
 }
 
 Done solve_by_elements(Radiosity& radiosity, const Task& task) {
-    const ElementReport report = solve_elements(radiosity, element_options(task.options), task.stop,
-                                                task.clock, task.observe);
+    ElementOptions elements = element_options(task.options);
+    elements.light_meanwhile = bool(task.snapshots.take);
+    const ElementReport report =
+        solve_elements(radiosity, elements, task.stop, task.clock,
+                       with_snapshots(task.observe, task.snapshots, radiosity, nullptr));
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
     Done out{balance(radiosity, task.options.seed), counters_of(radiosity)};
     out.counters["rows"] = static_cast<double>(report.rows);

@@ -278,6 +278,27 @@ TEST(Pipeline, SnapshotsComeAsAskedAndEndWithTheWhole) {
     EXPECT_GT(means.back(), 1.2 * means.front()) << "light grows from shot to shot";
 }
 
+TEST(Pipeline, SolversOfElementsShowWhatTheyHaveMeanwhile) {
+    SolveOptions options = quick();
+    options.solver = "jacobi";
+    const Solution alone = light(two_lamp_room(), options);
+    std::vector<double> means;
+    Snapshots snapshots;
+    snapshots.wanted = [](const Progress&) { return true; };
+    snapshots.take = [&](Solution so_far) {
+        EXPECT_TRUE(all_finite(so_far));
+        means.push_back(mean_irradiance(so_far, 1, 0));
+    };
+    const Solution watched = light(two_lamp_room(), options, {}, nullptr, snapshots);
+    ASSERT_GT(means.size(), 4u) << "nothing yet, direct light, sweeps, the end";
+    // Jacobi's sweeps only ever add light; the last state is gathered anew: other rays.
+    for (std::size_t i = 1; i + 1 < means.size(); ++i) EXPECT_GE(means[i], means[i - 1]);
+    EXPECT_NEAR(means[means.size() - 2], means.back(), 0.05 * means.back());
+    EXPECT_TRUE(std::equal(alone.irradiance.values().begin(), alone.irradiance.values().end(),
+                           watched.irradiance.values().begin()))
+        << "watching changes nothing";
+}
+
 TEST(Pipeline, SnapshotsSayWhatIsUnshot) {
     // Over the surfaces it adds up to what the solver says is left.
     std::vector<std::pair<double, double>> flux_and_left;

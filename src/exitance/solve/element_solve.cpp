@@ -71,7 +71,11 @@ class ElementSolve {
         find_direct(system, *transport);
         const auto solver =
             element_method(options_.solver).make(system, *transport, options_.solving);
-        exitance::run(*solver, stop_, clock_, [&](Progress progress) { tell(progress); });
+        exitance::run(*solver, stop_, clock_, [&](Progress progress) {
+            light_meanwhile(solver->irradiance());
+            tell(progress);
+        });
+        darken();
         report_.sweeps = solver->sweeps();
         report_.shots = transport->counters().shots;
         report_.rays += transport->counters().rays;
@@ -138,9 +142,21 @@ class ElementSolve {
         for (std::size_t i = 0; by_matrix && i < rows_.size(); ++i)
             if (radiosity_.emits(scene_.face(rows_.elements[i])))
                 transport.shoot(RowId(i), system.emitted[RowId(i)], system.direct);
+        light_meanwhile(system.direct);
         Progress progress;
         progress.phase = "direct";
         tell(progress);
+    }
+
+    void darken() {
+        radiosity_.irradiance =
+            VertexField(radiosity_.irradiance.rows(), radiosity_.irradiance.columns());
+    }
+
+    void light_meanwhile(const RowField& irradiance) {
+        if (!options_.light_meanwhile) return;
+        darken();
+        average_at_vertices(radiosity_, rows_, irradiance);
     }
 
     // Pairs know neither glass nor polygons that share a place.

@@ -19,6 +19,7 @@ struct ElementOptions {
     std::optional<std::string> factors;    ///< hemisphere or pairs; by default pairs of few rows
     std::optional<int> rays;               ///< per element; by default from the error
     bool gather_vertices = true;           ///< or else the mean of the elements around
+    bool light_meanwhile = false;          ///< vertices too, roughly, whenever it observes
     ElementSolverOptions solving;
     ColumnOptions column;
 };
