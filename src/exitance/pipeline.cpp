@@ -174,10 +174,7 @@ struct Done {
 };
 
 std::function<bool()> interruption(const Task& task) {
-    return [&task] {
-        return (task.stop.cancel && task.stop.cancel->requested()) ||
-               (task.stop.seconds && task.clock.seconds() > *task.stop.seconds);
-    };
+    return [&task] { return task.stop.interruption(task.clock).has_value(); };
 }
 
 // Runs an adaptive solver to the error asked for, beginning with a demand for `first`.

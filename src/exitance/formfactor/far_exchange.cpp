@@ -13,10 +13,8 @@ namespace exitance {
 
 SampledFacet::SampledFacet(std::span<const Vec3> outline_)
     : count(static_cast<std::uint32_t>(outline_.size())), centre(centroid(outline_)) {
-    for (std::size_t c = 0; c < 4; ++c) {
-        corners[c] = outline_[std::min(c, outline_.size() - 1)];
-        radius = std::max(radius, length(corners[c] - centre));
-    }
+    for (std::size_t c = 0; c < 4; ++c) corners[c] = outline_[std::min(c, outline_.size() - 1)];
+    radius = radius_about(centre, outline_);
     const Vec3 facing = vector_area(outline_);
     area = length(facing);
     plane.normal = normalized(facing);

@@ -17,13 +17,11 @@ Options describe(MethodOptions& o) {
     return {
         {"accuracy", &o.accuracy,
          "error to aim at: of each form factor, seen from the smaller of its two surfaces; of "
-         "auto, "
-         "of all factors of a row together. Every method's effort follows from it",
+         "auto, of all factors of a row together. Every method's effort follows from it",
          "", 1e-6, 0.1},
         {"samples", &o.samples,
          "effort instead of --accuracy: contour: segments an edge; disk: cells a polygon; "
-         "hemicube: "
-         "hemicubes a polygon; hemisphere: rays a polygon; monte-carlo: rays a pair",
+         "hemicube: hemicubes a polygon; hemisphere: rays a polygon; monte-carlo: rays a pair",
          "", 1, 1e9},
         {"resolution", &o.resolution,
          "cells along the edge of a hemicube; default: 4/√accuracy, 32 to 1024", "", 2, 8192},
@@ -72,14 +70,15 @@ std::vector<double> surface_areas(const Enclosure& enclosure) {
 void WorkDone::add(double work) {
     const std::lock_guard lock(telling_);
     done_ += work;
-    if (!call_.observe) return;
+    if (!observe_) return;
     Progress progress;
     progress.phase = "factors";
     progress.even = true;
     progress.seconds = clock_.seconds();
     progress.fraction_left = 1 - done_ / all_;
-    progress.rays = call_.counters.rays;
-    call_.observe(progress);
+    progress.fraction_target = 0;
+    progress.rays = rays_;
+    observe_(progress);
 }
 
 }  // namespace exitance

@@ -63,13 +63,20 @@ std::vector<double> surface_areas(const Enclosure& enclosure);
 /// Counts finished work and tells the observer, one thread at a time.
 class WorkDone {
   public:
-    WorkDone(const MethodCall& call, double all) : call_(call), all_(all) {}
+    /// Of `all`; `rays` are told along.
+    WorkDone(const Observer& observe, const Cancel* cancel, const std::atomic<std::uint64_t>& rays,
+             double all)
+        : observe_(observe), cancel_(cancel), rays_(rays), all_(all) {}
+    WorkDone(const MethodCall& call, double all)
+        : WorkDone(call.observe, call.cancel, call.counters.rays, all) {}
     /// False if the work was cancelled.
-    bool wanted() const { return !(call_.cancel && call_.cancel->requested()); }
+    bool wanted() const { return !(cancel_ && cancel_->requested()); }
     void add(double work);
 
   private:
-    const MethodCall& call_;
+    const Observer& observe_;
+    const Cancel* cancel_;
+    const std::atomic<std::uint64_t>& rays_;
     double all_;
     double done_ = 0;
     std::mutex telling_{};

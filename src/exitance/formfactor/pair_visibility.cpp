@@ -17,16 +17,6 @@ namespace {
 
 constexpr double least_rays = 16, most_rays = 131072;
 
-}  // namespace
-
-namespace {
-
-double radius(const Facet& facet, const Vec3& centre) {
-    double r = 0;
-    for (const Vec3& p : facet.corners()) r = std::max(r, length(p - centre));
-    return r;
-}
-
 /// Places on a facet as they are seen from a point.
 class SeenFacet {
   public:
@@ -34,7 +24,7 @@ class SeenFacet {
         : facet_(facet),
           places_(facet),
           centre_(centroid(facet.corners())),
-          radius_(radius(facet, centre_)) {}
+          radius_(radius_about(centre_, facet.corners())) {}
 
     struct Place {
         Vec3 at;

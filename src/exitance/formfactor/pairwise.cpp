@@ -2,7 +2,7 @@
 #include "exitance/formfactor/pairwise.h"
 
 #include <algorithm>
-#include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <numeric>
@@ -126,9 +126,7 @@ class GroupWork {
           group_(group),
           extent_(problem.facets, group.facets, slack),
           accuracy_(accuracy),
-          pair_(accuracy, slack, [&rays](const Pair& pair, double free, double tolerance) {
-              return rays(pair, free, tolerance);
-          }) {
+          pair_(accuracy, slack, std::ref(rays)) {
         for (const std::uint32_t row : group.rows) {
             sums_.emplace_back(row + 1, 0.0);
             last_row_ = std::max(last_row_, row);
@@ -326,13 +324,11 @@ ExchangeAreas pairwise_exchange_areas(const Enclosure& enclosure, const Pairwise
 
     std::vector<std::vector<double>> pieces(groups.size());
     std::vector<PairwiseCounters> counted(groups.size());
-    std::atomic<std::size_t> done = 0;
-    std::mutex reporting;
-    const Stopwatch watch;
+    WorkDone done(observer, cancel, rays.counters.rays, static_cast<double>(groups.size()));
     parallel_for(
         groups.size(),
         [&](std::size_t g) {
-            if (cancel && cancel->requested()) return;
+            if (!done.wanted()) return;
             GroupWork work(problem, tree, groups[g], options.accuracy, rays);
             work.run();
             counted[g] = work.counters();
@@ -342,19 +338,10 @@ ExchangeAreas pairwise_exchange_areas(const Enclosure& enclosure, const Pairwise
                 for (std::size_t k = 0; k < groups[g].rows.size(); ++k)
                     keep(groups[g].rows[k], work.sums()[k]);
             }
-            if (!observer) return;
-            const std::lock_guard lock(reporting);
-            const std::size_t now = ++done;
-            Progress progress;
-            progress.phase = "factors";
-            progress.even = true;
-            progress.seconds = watch.seconds();
-            progress.fraction_left = 1 - double(now) / double(groups.size());
-            progress.fraction_target = 0;
-            observer(progress);
+            done.add(1);
         },
         1);
-    if (cancel && cancel->requested())
+    if (!done.wanted())
         throw Error(Fault::could_not_finish, "form factors: interrupted, nothing is written");
 
     for (std::size_t g = 0; g < groups.size(); ++g) {

@@ -21,10 +21,6 @@ constexpr std::array<double, 4> nodes{0.5 * inner, 0.5 * (1 - inner), 0.5 + 0.5 
 constexpr double finer = 0.25;
 constexpr std::size_t most_cells = 4096, most_agreeing = 256;
 
-}  // namespace
-
-namespace {
-
 // Vanishes where the integrand is linear; a kink across the cell shows in one of the three sums
 // whichever way it runs.
 double unevenness(const std::array<double, 16>& at) {
@@ -73,10 +69,9 @@ void PartialExchanger::look(Cell& cell) {
 // Shadows vary over what is as far away as they are wide: a cell that is larger than its distance
 // from an obstacle may have missed one.
 bool PartialExchanger::is_large(const Cell& cell) const {
-    const auto& c = roots_[cell.root].corners;
-    const double s = cell.s + 0.5 * cell.size, t = cell.t + 0.5 * cell.size;
-    const Vec3 low = c[0] + (c[1] - c[0]) * s, high = c[3] + (c[2] - c[3]) * s;
-    const Vec3 middle = low + (high - low) * t;
+    const Root& root = roots_[cell.root];
+    const auto& c = root.corners;
+    const Vec3 middle = root.at(cell.s + 0.5 * cell.size, cell.t + 0.5 * cell.size);
     const double width = cell.size * std::max(length(c[2] - c[0]), length(c[3] - c[1]));
     for (const Box& box : near_) {
         const Vec3 off = middle - max(box.lower, min(middle, box.upper));

@@ -99,17 +99,11 @@ Plane plane_of(std::span<const Vec3> corners) {
     return {normal, dot(normal, corners[0])};
 }
 
-double radius(std::span<const Vec3> corners, const Vec3& centre) {
-    double r = 0;
-    for (const Vec3& c : corners) r = std::max(r, length(c - centre));
-    return r;
-}
-
 }  // namespace
 
 double exchange_area(std::span<const Vec3> a, std::span<const Vec3> b, double tolerance) {
     const Vec3 middle_a = centroid(a), middle_b = centroid(b);
-    const double reach = radius(a, middle_a) + radius(b, middle_b);
+    const double reach = radius_about(middle_a, a) + radius_about(middle_b, b);
     const double distance = length(middle_b - middle_a), scale = distance + reach;
     if (!(scale > 0)) return 0;
     const double slack = 1e-12 * scale;

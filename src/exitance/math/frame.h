@@ -7,18 +7,23 @@
 
 namespace exitance {
 
-struct Frame {
-    Vec3 tangent, bitangent, normal;
+template <class T>
+struct BasicFrame {
+    Vector3<T> tangent, bitangent, normal;
 
-    explicit Frame(const Vec3& unit_normal) : normal(unit_normal) {
-        const double sign = std::copysign(1.0, normal.z);
-        const double a = -1.0 / (sign + normal.z);
-        const double b = normal.x * normal.y * a;
-        tangent = {1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
+    explicit BasicFrame(const Vector3<T>& unit_normal) : normal(unit_normal) {
+        const T sign = std::copysign(T(1), normal.z);
+        const T a = T(-1) / (sign + normal.z);
+        const T b = normal.x * normal.y * a;
+        tangent = {T(1) + sign * normal.x * normal.x * a, sign * b, -sign * normal.x};
         bitangent = {b, sign + normal.y * normal.y * a, -normal.y};
     }
 
-    Vec3 to_world(const Vec3& v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
+    Vector3<T> to_world(const Vector3<T>& v) const {
+        return tangent * v.x + bitangent * v.y + normal * v.z;
+    }
 };
+
+using Frame = BasicFrame<double>;
 
 }  // namespace exitance

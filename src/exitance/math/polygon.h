@@ -50,6 +50,13 @@ inline Vec3 centroid(std::span<const Vec3> corners) {
     return sum / static_cast<double>(corners.size());
 }
 
+/// Largest distance of a corner from `centre`.
+inline double radius_about(const Vec3& centre, std::span<const Vec3> corners) {
+    double radius = 0;
+    for (const Vec3& c : corners) radius = std::max(radius, length(c - centre));
+    return radius;
+}
+
 /// Largest distance of a corner from the plane through the mean of the corners.
 inline double planarity_error(std::span<const Vec3> corners) {
     const Vec3 n = unit_normal(corners), c = centroid(corners);

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "exitance/math/disjoint_sets.h"
 #include "exitance/math/polygon.h"
 #include "exitance/run/random.h"
 
@@ -42,21 +43,6 @@ std::vector<std::uint32_t> places_of(const Scene& scene, const Box& bounds) {
     return out;
 }
 
-class UnionFind {
-  public:
-    explicit UnionFind(std::size_t size) : parent_(size) {
-        std::iota(parent_.begin(), parent_.end(), 0U);
-    }
-    std::uint32_t root(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void join(std::uint32_t a, std::uint32_t b) { parent_[root(a)] = root(b); }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
-
 // Polygons along an edge: how many run along it each way, and one of them.
 struct Edge {
     std::uint32_t forward = 0, backward = 0, polygon = 0;
@@ -84,12 +70,12 @@ class Bodies {
         for (std::uint32_t p = 0; p < scene.polygons.size(); ++p) add(p);
         for (const auto& [key, edge] : edges)
             if (edge.forward != 1 || edge.backward != 1)
-                bodies_[joined_.root(edge.polygon)].closed = false;
+                bodies_[joined_.find(edge.polygon)].closed = false;
         find_what_holds_others();
     }
 
     bool hides_back_of(std::uint32_t polygon) {
-        const Body& body = bodies_.at(joined_.root(polygon));
+        const Body& body = bodies_.at(joined_.find(polygon));
         return body.closed && body.volume > 0;
     }
 
@@ -107,7 +93,7 @@ class Bodies {
 
     void add(std::uint32_t p) {
         const Polygon& polygon = scene_.polygons[p];
-        Body& body = bodies_[joined_.root(p)];
+        Body& body = bodies_[joined_.find(p)];
         if (scene_.material(polygon).transmits()) body.closed = false;
         const auto c = scene_.corners(polygon);
         const std::span<const Vec3> corners(c.data(), polygon.size());
@@ -138,7 +124,7 @@ class Bodies {
                 const Vec3 c = corner(*at);
                 if (c.y > body.box.lower.y + slack && c.y < body.box.upper.y - slack &&
                     c.z > body.box.lower.z + slack && c.z < body.box.upper.z - slack &&
-                    joined_.root(*at) != root)
+                    joined_.find(*at) != root)
                     body.closed = false;
             }
         }
@@ -146,7 +132,7 @@ class Bodies {
 
     const Scene& scene_;
     Box bounds_;
-    UnionFind joined_;
+    DisjointSets joined_;
     std::map<std::uint32_t, Body> bodies_;  // by root
 };
 

@@ -86,10 +86,7 @@ class ElementSolve {
     }
 
   private:
-    bool interrupted() const {
-        return (stop_.cancel && stop_.cancel->requested()) ||
-               (stop_.seconds && clock_.seconds() > *stop_.seconds);
-    }
+    bool interrupted() const { return stop_.interruption(clock_).has_value(); }
 
     void tell(Progress progress) const {
         if (!observe_) return;

@@ -30,9 +30,9 @@ Options describe(SolveOptions& o) {
         {"time", &o.time, "stop after this long and keep the best solution so far", "s", 0},
         {"solver", &o.solver,
          "how the system is solved: gathering = a rough balance on stored ray hits and one "
-         "gathering "
-         "step where light needs it, shooting = progressive refinement; both divide elements where "
-         "light needs it; the others are for one exitance per element of an even mesh",
+         "gathering step where light needs it, shooting = progressive refinement; both divide "
+         "elements where light needs it; the others are for one exitance per element of an even "
+         "mesh",
          "", 0, 0, solver_names()},
         {"transport",
          &o.transport,

@@ -5,8 +5,7 @@ namespace exitance {
 
 Ended run(Solver& solver, const Stop& stop, const Stopwatch& clock, const Observer& observe) {
     while (true) {
-        if (stop.cancel && stop.cancel->requested()) return Ended::cancelled;
-        if (stop.seconds && clock.seconds() >= *stop.seconds) return Ended::out_of_time;
+        if (const auto interrupted = stop.interruption(clock)) return *interrupted;
         const double target = stop.unshot.value_or(solver.enough());
         if (solver.unshot() <= target) return Ended::converged;
         if (stop.next_shot && solver.next_shot() < *stop.next_shot) return Ended::converged;

@@ -25,15 +25,22 @@ class Solver {
     virtual Progress progress() const = 0;
 };
 
+enum class Ended { converged, out_of_time, cancelled };
+
 /// When to end; whichever comes first.
 struct Stop {
     std::optional<double> unshot;     ///< share of the emitted light; default: Solver::enough()
     std::optional<double> seconds;    ///< since `clock` was started
     std::optional<double> next_shot;  ///< least that is worth a step, a share of the emitted light
     const Cancel* cancel = nullptr;
-};
 
-enum class Ended { converged, out_of_time, cancelled };
+    /// Whether the user or the time that `clock` shows says so, whatever the solver has reached.
+    std::optional<Ended> interruption(const Stopwatch& clock) const {
+        if (cancel && cancel->requested()) return Ended::cancelled;
+        if (seconds && clock.seconds() >= *seconds) return Ended::out_of_time;
+        return {};
+    }
+};
 
 /// Runs `solver` until `stop` says so; `observe` hears of every step.
 Ended run(Solver& solver, const Stop& stop, const Stopwatch& clock, const Observer& observe);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "exitance/math/frame.h"
 #include "exitance/math/multiversion.h"
 #include "exitance/run/random.h"
 
@@ -28,19 +29,6 @@ constexpr auto first_packet = [] {
     return a * (1.0f + b * (-1.0f / 6 + b * (1.0f / 120 + b * (-1.0f / 5040 + b / 362880.0f))));
 }
 
-// The axes of a plane with this unit normal (Duff et al. 2017, "Building an Orthonormal Basis,
-// Revisited").
-struct Axes {
-    Vec3f x, y;
-
-    explicit Axes(const Vec3f& n) {
-        const float sign = std::copysign(1.0f, n.z);
-        const float a = -1.0f / (sign + n.z), b = n.x * n.y * a;
-        x = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
-        y = {b, sign + n.y * n.y * a, -n.y};
-    }
-};
-
 }  // namespace
 
 EXITANCE_MULTIVERSION
@@ -49,9 +37,9 @@ void aim_hemisphere(RayPacket& rays, const Vec3f& origin, const Vec3f& normal, s
     const auto [first_u, first_v] = sobol(packet * static_cast<std::uint32_t>(width));
     const std::uint32_t shift_u = first_u ^ static_cast<std::uint32_t>(key);
     const std::uint32_t shift_v = first_v ^ static_cast<std::uint32_t>(key >> 32);
-    const Axes axes(normal);
-    const float ax = axes.x.x, ay = axes.x.y, az = axes.x.z;
-    const float bx = axes.y.x, by = axes.y.y, bz = axes.y.z;
+    const BasicFrame<float> frame(normal);
+    const float ax = frame.tangent.x, ay = frame.tangent.y, az = frame.tangent.z;
+    const float bx = frame.bitangent.x, by = frame.bitangent.y, bz = frame.bitangent.z;
     const float nx = normal.x, ny = normal.y, nz = normal.z;
     rays.origin_x.fill(origin.x), rays.origin_y.fill(origin.y), rays.origin_z.fill(origin.z);
     rays.near.fill(0.0f), rays.far.fill(std::numeric_limits<float>::infinity());

@@ -24,10 +24,7 @@ struct Plane {
           count(scene.polygons[polygon].size()),
           normal(scene.normal(scene.polygons[polygon])),
           centre(centroid({corners.data(), count})),
-          radius(0) {
-        for (std::uint32_t i = 0; i < count; ++i)
-            radius = std::max(radius, length(corners[i] - centre));
-    }
+          radius(radius_about(centre, {corners.data(), count})) {}
 };
 
 Cover cover_of(const Plane& plane, const Vec3& middle) {
