@@ -12,6 +12,9 @@ namespace {
 
 // Of the error asked for, how much the light that is never shot may take, as in shooting.cpp.
 constexpr double unshot_share = 0.15;
+// How much of the error asked for noise may take, on average: some places are four times worse,
+// and colours of little luminance more than white.
+constexpr double noise_share = 0.15;
 // Rows whose values a log shows.
 constexpr std::size_t shown_rows = 16;
 
@@ -85,6 +88,17 @@ double ElementSolver::negligible() const {
     if (system_.emitted_flux <= 0) return 0.0;
     return unshot_share * options_.error * mean_irradiance_ * (open_area_ - most_reflected_) /
            system_.emitted_flux;
+}
+
+double ElementSolver::flux_of(const RowField& field) const {
+    double sum = 0;
+    for (std::size_t i = 0; i < system_.rows(); ++i)
+        sum += double(system_.area[i] * system_.columns.magnitude(field[RowId(i)]));
+    return system_.emitted_flux > 0 ? sum / system_.emitted_flux : 0.0;
+}
+
+double ElementSolver::enough_noise(const RowField& reflected) const {
+    return std::max(negligible(), noise_share * options_.error * flux_of(reflected));
 }
 
 double ElementSolver::enough() const {

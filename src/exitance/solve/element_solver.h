@@ -50,6 +50,10 @@ class ElementSolver : public Solver {
     void residual_of(std::size_t i, std::span<float> out) const;
     /// Flux below which what is unshot does not matter for the error asked for, over Φ.
     double negligible() const;
+    /// Flux that noise may be wrong by on average, over Φ, if `reflected` is what is noisy.
+    double enough_noise(const RowField& reflected) const;
+    /// Σ A |field| over Φ.
+    double flux_of(const RowField& field) const;
 
     const ElementSystem& system_;
     Transport& transport_;

@@ -14,9 +14,6 @@ namespace {
 constexpr std::size_t sample_share = 8, least_sample = 64;
 // What a series leaves unfollowed, as a part of what may stay unshot: every series leaves it.
 constexpr double share_left = 0.25;
-// How much of the error asked for noise may take, on average: some places are four times worse,
-// and colours of little luminance more than white.
-constexpr double noise_share = 0.15;
 
 void add(RowField& sum, const RowField& term, float factor) {
     for (std::size_t i = 0; i < sum.rows(); ++i)
@@ -34,13 +31,6 @@ StochasticJacobi::StochasticJacobi(const ElementSystem& system, Transport& trans
     left_ = all_ = ElementSolver::unshot();
 }
 
-double StochasticJacobi::flux_of(const RowField& field) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < system_.rows(); ++i)
-        sum += double(system_.area[i] * system_.columns.magnitude(field[RowId(i)]));
-    return system_.emitted_flux > 0 ? sum / system_.emitted_flux : 0.0;
-}
-
 double StochasticJacobi::unshot() const {
     if (exact_) return left_;
     return complete_ < 2 ? all_ : noise_;
@@ -54,19 +44,18 @@ Progress StochasticJacobi::progress() const {
 
 double StochasticJacobi::enough() const {
     if (exact_) return negligible();
-    return std::max(negligible(), noise_share * options_.error * reflected_flux_);
+    return enough_noise(mean_);
 }
 
 // Systematic sampling with inclusion probabilities π_i = min(1, m Φ_i / Φ): rows in their order,
 // which lie side by side in the scene, are represented evenly.
-bool StochasticJacobi::reflect_sampled() {
+bool StochasticJacobi::shoot_sampled(RowField& arriving) {
     const std::size_t n = system_.rows();
     const std::size_t m = std::max(n / sample_share, least_sample);
     std::vector<double> flux(n);
     double total = 0;
     for (std::size_t i = 0; i < n; ++i)
         total += flux[i] = double(system_.area[i] * system_.columns.magnitude(change_[RowId(i)]));
-    RowField arriving(n, system_.columns.count);
     const double offset = uniform(hash_bits(options_.seed, complete_), reflections_);
     std::vector<float> row(system_.columns.stride);
     double passed = 0;
@@ -82,9 +71,19 @@ bool StochasticJacobi::reflect_sampled() {
             row[c] = change_[RowId(i)][c] / static_cast<float>(share);
         transport_.shoot(RowId(i), row, arriving);
     }
+    return all;
+}
+
+bool StochasticJacobi::reflect_sampled() {
+    RowField arriving(system_.rows(), system_.columns.count);
+    bool all = false;
+    if (transport_.random())
+        transport_.gather(change_, arriving);
+    else
+        all = shoot_sampled(arriving);
     add(arrived_, arriving, 1.0f);
-    for (std::size_t i = 0; i < n; ++i)
-        for (std::size_t c = 0; c < row.size(); ++c)
+    for (std::size_t i = 0; i < system_.rows(); ++i)
+        for (std::size_t c = 0; c < system_.columns.stride; ++c)
             change_[RowId(i)][c] = system_.rho[RowId(i)][c] * arriving[RowId(i)][c];
     return all;
 }
@@ -122,7 +121,6 @@ void StochasticJacobi::finish_series() {
                      std::sqrt(squares_[i] / double(complete_) / double(complete_ - 1));
     }
     noise_ = system_.emitted_flux > 0 ? noise / system_.emitted_flux : 0.0;
-    reflected_flux_ = flux_of(mean_);
     reflected_ = mean_, irradiance_ = mean_arrived_;
     for (RowField* field : {&series_, &arrived_})
         *field = RowField(system_.rows(), system_.columns.count);

@@ -12,6 +12,7 @@ namespace exitance {
 /// left does not matter; F̂ takes a sample of ΔR's rows in proportion to their flux, each for those
 /// it stands for. A series is right on average; the mean of many is what is asked for, and how
 /// they differ tells how wrong it still is. A small system is its own sample: then this is Jacobi.
+/// A transport that is random itself is the sample: as many rays from each row as it has flux.
 class StochasticJacobi final : public ElementSolver {
   public:
     StochasticJacobi(const ElementSystem& system, Transport& transport,
@@ -28,10 +29,11 @@ class StochasticJacobi final : public ElementSolver {
     double sweep() override;
     /// A mean of n series gets better with their root: slowly, but always.
     double patience() const override { return 1e6; }
-    /// ΔR ← ρ F̂ ΔR; false if every row was in the sample.
+    /// F̂ ΔR of a sample of the rows; false if not all of them were in it.
+    bool shoot_sampled(RowField& arriving);
+    /// ΔR ← ρ F̂ ΔR; false if anything was left to chance.
     bool reflect_sampled();
     void finish_series();
-    double flux_of(const RowField& field) const;
 
     RowField change_;            ///< ΔR of the series under way
     RowField series_, arrived_;  ///< its sum of ΔR, and of F̂ ΔR
@@ -40,7 +42,7 @@ class StochasticJacobi final : public ElementSolver {
     std::uint64_t complete_ = 0, reflections_ = 0;
     bool exact_ = true;          ///< nothing was left to chance so far
     double all_ = 1, left_ = 1;  ///< flux of the first reflection, and what is not followed yet
-    double noise_ = 0, reflected_flux_ = 0;
+    double noise_ = 0;
 };
 
 }  // namespace exitance

@@ -28,6 +28,8 @@ class Transport {
     virtual void shoot(RowId from, std::span<const float> exitance, RowField& irradiance) = 0;
     /// Whether gather() and shoot() are one operator with A_i F_ij = A_j F_ji to the last bit.
     virtual bool symmetric() const = 0;
+    /// Whether every product is another sample of F, right on average.
+    virtual bool random() const { return false; }
     /// Error to expect of the irradiance of a row, as a share of it, where what it sees is uneven.
     virtual double accuracy() const = 0;
     /// What is stored.
