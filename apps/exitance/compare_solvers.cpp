@@ -68,6 +68,7 @@ std::string row(const SolveOptions& options, const Run& done, const Solution& re
 std::string compare_solvers(const Scene& scene, const SolveOptions& options, const Cancel& cancel) {
     SolveOptions exact = options;
     exact.solver = "krylov", exact.unshot = 1e-7;
+    exact.transport.reset(), exact.min_area.reset();
     const Solution reference = run(scene, exact, cancel).solution;
     std::string table =
         "solver        transport    sweeps      rays    CPU s  residual  RMS diff %        MB\n";
@@ -81,7 +82,8 @@ std::string compare_solvers(const Scene& scene, const SolveOptions& options, con
     if (!options.transport && !options.unshot && options.overshoot) add(adaptive_gathering, {});
     for (const ElementMethod& method : element_methods())
         for (const std::string_view transport : transports)
-            if (!options.transport || *options.transport == transport)
+            if ((!options.transport || *options.transport == transport) &&
+                go_together(method, transport) && (!options.min_area || transport == "links"))
                 add(method.name, std::string(transport));
     return table;
 }

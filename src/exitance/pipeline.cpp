@@ -65,12 +65,14 @@ ShootingOptions shooting_options(const SolveOptions& options, double extent) {
     return out;
 }
 
-ElementOptions element_options(const SolveOptions& options) {
+ElementOptions element_options(const SolveOptions& options, double extent) {
     ElementOptions out;
     out.solver = options.solver;
     out.transport = options.transport;
     out.factors = options.factors;
     if (options.element_rays) out.rays = static_cast<int>(*options.element_rays);
+    out.min_area = static_cast<float>(min_area(options, options.error, extent));
+    out.divide = options.adaptive;
     out.gather_vertices = options.vertices.value_or("gather") == "gather";
     out.solving = {options.error, options.unshot, options.overshoot, options.seed};
     out.column.seed = options.seed;
@@ -232,7 +234,7 @@ Done gather_adaptively(Radiosity& radiosity, const Task& task) {
 }
 
 Done solve_by_elements(Radiosity& radiosity, const Task& task) {
-    ElementOptions elements = element_options(task.options);
+    ElementOptions elements = element_options(task.options, task.size);
     elements.light_meanwhile = bool(task.snapshots.take);
     const ElementReport report =
         solve_elements(radiosity, elements, task.stop, task.clock,
@@ -241,6 +243,7 @@ Done solve_by_elements(Radiosity& radiosity, const Task& task) {
     Done out{balance(radiosity, task.options.seed), counters_of(radiosity)};
     out.counters["rows"] = static_cast<double>(report.rows);
     out.counters["sweeps"] = report.sweeps;
+    if (report.links) out.counters["links"] = static_cast<double>(*report.links);
     out.counters["residual"] = report.residual;
     out.counters["transport_bytes"] = static_cast<double>(report.bytes);
     out.counters["shots"] = static_cast<double>(report.shots);

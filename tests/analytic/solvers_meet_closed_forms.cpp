@@ -23,8 +23,8 @@ struct Method {
     double less = 1;
 };
 
-/// Adaptive shooting and gathering, and every solver of elements with every transport: a new one is
-/// added to solve/element_methods.h and meets them all.
+/// Adaptive shooting and gathering, and every solver of elements with every transport that it
+/// bears: a new one is added to solve/element_methods.h and meets them all.
 std::vector<Method> methods() {
     Method shooting;
     shooting.name = "shooting";
@@ -38,6 +38,7 @@ std::vector<Method> methods() {
     std::vector<Method> all{shooting, overshooting, gathering};
     for (const ElementMethod& method : element_methods())
         for (const std::string_view transport : transports) {
+            if (!go_together(method, transport)) continue;
             Method by_elements{std::string(method.name) + "_" + std::string(transport), {}, 4};
             std::replace(by_elements.name.begin(), by_elements.name.end(), '-', '_');
             by_elements.options.solver = method.name;

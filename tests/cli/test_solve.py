@@ -103,6 +103,14 @@ position = [0, HEIGHT, 0]
                           ("jacobi", "gauss-seidel", "southwell", "krylov", "stochastic")])
         for line in lines:  # 20 % is asked for; all five solve the same matrix
             self.assertLess(float(line.split()[-2]), 5, line)
+        both = self.succeed("solve", self.scene, "--compare", "--error", "0.2", "--transport",
+                            "links", "--solver", "jacobi").stdout.splitlines()[1:]
+        self.assertEqual(len(both), 4)
+        for line in both:  # against the matrix now, at 20 % each
+            self.assertLess(float(line.split()[-2]), 20, line)
+        rays = self.succeed("solve", self.scene, "--compare", "--error", "0.2", "--transport",
+                            "stochastic").stdout.splitlines()[1:]
+        self.assertEqual([line.split()[0] for line in rays], ["jacobi", "stochastic"])
         self.refuse(WRONG_USE, "--compare prints", "solve", self.scene, "--compare", "-o", "x.glb")
 
     def test_output_is_needed_without_a_table(self):
@@ -120,6 +128,12 @@ position = [0, HEIGHT, 0]
                  "--solver", "jacobi", "--transport", "on-the-fly", "--factors", "pairs"),
                 (r"--min-area cannot .* krylov: .* expected --element-size",
                  "--solver", "krylov", "--min-area", "0.01"),
+                (r"--transport stochastic cannot .* krylov, .* expected --solver jacobi or stochastic",
+                 "--solver", "krylov", "--transport", "stochastic"),
+                (r"--transport links cannot .* stochastic: a sample .* expected .* jacobi",
+                 "--solver", "stochastic", "--transport", "links"),
+                (r"--factors cannot .* links, which has no matrix; expected dense or sparse",
+                 "--solver", "jacobi", "--transport", "links", "--factors", "pairs"),
                 (r"--next-shot cannot .* jacobi.* expected --unshot",
                  "--solver", "jacobi", "--next-shot", "0.01"),
                 (r"--no-occlusion cannot .* jacobi: rays", "--solver", "jacobi", "--no-occlusion"),

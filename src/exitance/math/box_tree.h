@@ -32,6 +32,13 @@ class BoxTree {
         if (!nodes_.empty()) walk(0, accept, visit);
     }
 
+    /// Calls `visit(std::uint32_t)` for every box for which `meets(const Box&)` holds, until it
+    /// returns false; `meets` must hold for a box that contains one for which it does.
+    template <class Meets, class Visit>
+    void for_meeting(const Meets& meets, const Visit& visit) const {
+        if (!nodes_.empty()) walk_meeting(0, meets, visit);
+    }
+
   private:
     static constexpr std::uint32_t leaf_size = 4;
 
@@ -84,6 +91,17 @@ class BoxTree {
         }
         walk(at + 1, accept, visit);
         walk(node.right, accept, visit);
+    }
+
+    template <class Meets, class Visit>
+    bool walk_meeting(std::size_t at, const Meets& meets, const Visit& visit) const {
+        const Node& node = nodes_[at];
+        if (!meets(node.box)) return true;
+        if (node.right != 0)
+            return walk_meeting(at + 1, meets, visit) && walk_meeting(node.right, meets, visit);
+        for (std::uint32_t i = node.begin; i < node.end; ++i)
+            if (meets(boxes_[order_[i]]) && !visit(order_[i])) return false;
+        return true;
     }
 
     std::vector<Box> boxes_;

@@ -18,11 +18,14 @@ std::unique_ptr<ElementSolver> make(const ElementSystem& system, Transport& tran
 }
 
 constexpr std::array methods{
-    ElementMethod{"jacobi", "gathering, all rows at once", make<Jacobi>},
-    ElementMethod{"gauss-seidel", "one row after the other", make<GaussSeidel>},
-    ElementMethod{"southwell", "the row with most unshot light first", make<Southwell>},
-    ElementMethod{"krylov", "conjugate gradients on the symmetrised system", make<Krylov>},
-    ElementMethod{"stochastic", "gathering from random samples", make<StochasticJacobi>},
+    ElementMethod{"jacobi", "gathering, all rows at once", make<Jacobi>, true, false},
+    ElementMethod{"gauss-seidel", "one row after the other", make<GaussSeidel>, false, false},
+    ElementMethod{"southwell", "the row with most unshot light first", make<Southwell>, false,
+                  false},
+    ElementMethod{"krylov", "conjugate gradients on the symmetrised system", make<Krylov>, false,
+                  false},
+    ElementMethod{"stochastic", "gathering from random samples", make<StochasticJacobi>, true,
+                  true},
 };
 
 }  // namespace
@@ -38,6 +41,11 @@ const ElementMethod& element_method(const std::string& name) {
         names.emplace_back(method.name);
     }
     throw Error(Fault::wrong_use, "unknown solver '" + name + "'" + suggestion(name, names));
+}
+
+bool go_together(const ElementMethod& method, std::string_view transport) {
+    if (transport == "links") return !method.samples_rows;
+    return method.bears_samples || transport != "stochastic";
 }
 
 }  // namespace exitance

@@ -17,6 +17,8 @@ struct ElementMethod {
     std::string_view what;
     std::unique_ptr<ElementSolver> (*make)(const ElementSystem&, Transport&,
                                            const ElementSolverOptions&);
+    bool bears_samples;  ///< a transport whose every product is another sample
+    bool samples_rows;   ///< of links a few rows cost more than a whole product
 };
 
 /// Solvers besides adaptive shooting (solve/shooting.h), which works on vertices and refines.
@@ -27,6 +29,10 @@ const ElementMethod& element_method(const std::string& name);
 
 inline constexpr std::string_view adaptive_shooting = "shooting";
 inline constexpr std::string_view adaptive_gathering = "gathering";
-inline constexpr std::array<std::string_view, 3> transports{"dense", "sparse", "on-the-fly"};
+inline constexpr std::array<std::string_view, 5> transports{"dense", "sparse", "on-the-fly",
+                                                            "links", "stochastic"};
+
+/// Whether the solver and the transport, both in their lists, can be had together.
+bool go_together(const ElementMethod& method, std::string_view transport);
 
 }  // namespace exitance

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "exitance/formfactor/pairwise.h"
 #include "exitance/run/error.h"
@@ -13,10 +14,12 @@
 #include "exitance/solve/cast_emission.h"
 #include "exitance/solve/element_methods.h"
 #include "exitance/solve/element_vertices.h"
+#include "exitance/solve/link_refinement.h"
 #include "exitance/transport/dense.h"
 #include "exitance/transport/exchange_by_casting.h"
 #include "exitance/transport/on_the_fly.h"
 #include "exitance/transport/sparse.h"
+#include "exitance/transport/stochastic_rays.h"
 
 namespace exitance {
 
@@ -51,41 +54,112 @@ class ElementSolve {
           clock_(clock),
           observe_(observe),
           scene_{radiosity.mesh, radiosity.caster, radiosity.owners, radiosity.two_sided()},
-          rows_(make_element_rows(scene_)),
-          points_(make_row_points(scene_, rows_)),
-          caster_(scene_, rows_,
-                  options.rays ? static_cast<std::uint32_t>(*options.rays)
-                               : rays_for_error(options.solving.error),
-                  options.column.seed),
           tolerance_(static_cast<float>(std::max(
               options.solving.error * radiosity.emitted_flux() / radiosity.area(), 1e-30))) {}
 
     ElementReport run() {
-        report_.rows = rows_.size();
+        if (options_.transport == "links") return run_links();
+        rows_ = make_element_rows(scene_);
         report_.transport =
             options_.transport.value_or(rows_.size() <= rows_of_dense ? std::string(transports[0])
                                                                       : std::string(transports[1]));
         refuse_what_would_not_fit();
+        points_ = make_row_points(scene_, rows_);
+        make_caster();
         ElementSystem system = make_system();
         const std::unique_ptr<Transport> transport = make_transport();
         find_direct(system, *transport);
-        const auto solver =
-            element_method(options_.solver).make(system, *transport, options_.solving);
+        finish(system, *transport, *solve(system, *transport));
+        return report_;
+    }
+
+  private:
+    // Refine, solve, and refine again for what was found, until no link is too wrong for it.
+    ElementReport run_links() {
+        report_.transport = "links";
+        LinkRefinement links(radiosity_, scene_, link_options());
+        links.refine({});
+        for (;;) {
+            report_.rays = links.rays();
+            rows_ = links.rows();
+            ElementSystem system = make_system();
+            system.direct = links.direct();
+            make_caster();
+            const std::unique_ptr<LinkTransport> transport = links.transport();
+            if (!interrupted()) transport->scale_to(seen_shares());
+            const std::unique_ptr<ElementSolver> solver = solve(system, *transport);
+            report_.links = links.links();
+            if (!interrupted() && links.refine(solver->reflected())) continue;
+            finish(system, *transport, *solver);
+            return report_;
+        }
+    }
+
+    // By rays: what every row sees of all the others together.
+    std::vector<float> seen_shares() {
+        std::vector<float> seen(rows_.size(), 0.0f);
+        parallel_for(
+            rows_.size(),
+            [&](std::size_t i) {
+                if (!(rows_.area[i] > 0)) return;
+                const std::uint32_t cast =
+                    caster_->cast_row(i, [&](std::uint32_t row, float share) {
+                        if (rows_.area[row] > 0) seen[i] += share;
+                    });
+                if (cast > 0) seen[i] /= static_cast<float>(cast);
+            },
+            8);
+        report_.rays += std::uint64_t{caster_->rays()} * rows_.size();
+        return seen;
+    }
+
+    LinkOptions link_options() {
+        LinkOptions out;
+        out.error = options_.solving.error;
+        out.tolerance = tolerance_;
+        out.min_area = options_.min_area;
+        out.divide = options_.divide;
+        out.column = options_.column;
+        out.each_round = [this](const LinkRefinement& links) {
+            if (!options_.light_meanwhile) return;
+            rows_ = links.rows();
+            light_meanwhile(links.irradiance());
+        };
+        out.go_on = [this](std::uint64_t rays) {
+            report_.rays = rays;
+            tell_phase("links");
+            return !interrupted();
+        };
+        return out;
+    }
+
+    void make_caster() {
+        caster_.emplace(scene_, rows_,
+                        options_.rays ? static_cast<std::uint32_t>(*options_.rays)
+                                      : rays_for_error(options_.solving.error),
+                        options_.column.seed);
+    }
+
+    std::unique_ptr<ElementSolver> solve(const ElementSystem& system, Transport& transport) {
+        auto solver = element_method(options_.solver).make(system, transport, options_.solving);
         exitance::run(*solver, stop_, clock_, [&](Progress progress) {
             light_meanwhile(solver->irradiance());
             tell(progress);
         });
         darken();
-        report_.sweeps = solver->sweeps();
-        report_.shots = transport->counters().shots;
-        report_.rays += transport->counters().rays;
-        report_.bytes = transport->bytes();
-        light_vertices(*solver);
-        report_.residual = measured_residual(system, *transport, *solver);
-        return report_;
+        report_.sweeps += solver->sweeps();
+        return solver;
     }
 
-  private:
+    void finish(const ElementSystem& system, Transport& transport, const ElementSolver& solver) {
+        report_.rows = rows_.size();
+        report_.shots = transport.counters().shots;
+        report_.rays += transport.counters().rays;
+        report_.bytes = transport.bytes();
+        light_vertices(solver);
+        report_.residual = measured_residual(system, transport, solver);
+    }
+
     bool interrupted() const { return stop_.interruption(clock_).has_value(); }
 
     void tell(Progress progress) const {
@@ -94,6 +168,12 @@ class ElementSolve {
         progress.rays += report_.rays;
         progress.vertices = radiosity_.receivers.size();
         observe_(progress);
+    }
+
+    void tell_phase(const char* phase) const {
+        Progress progress;
+        progress.phase = phase;
+        tell(progress);
     }
 
     void refuse_what_would_not_fit() const {
@@ -140,9 +220,7 @@ class ElementSolve {
             if (radiosity_.emits(scene_.face(rows_.elements[i])))
                 transport.shoot(RowId(i), system.emitted[RowId(i)], system.direct);
         light_meanwhile(system.direct);
-        Progress progress;
-        progress.phase = "direct";
-        tell(progress);
+        tell_phase("direct");
     }
 
     void darken() {
@@ -163,14 +241,14 @@ class ElementSolve {
         for (const ElementId id : rows_.elements)
             shared = shared ||
                      !scene_.owners.covers(scene_.face(id).polygon, scene_.face(id).back).empty();
-        const bool possible =
-            !radiosity_.caster.has_glass() && !shared && report_.transport != "on-the-fly";
+        const bool stored = report_.transport == "dense" || report_.transport == "sparse";
+        const bool possible = !radiosity_.caster.has_glass() && !shared && stored;
         if (wanted && !possible)
             throw Error(Fault::wrong_use,
-                        std::string("--factors pairs cannot be had with ") +
-                            (shared                          ? "polygons that lie in one place"
-                             : radiosity_.caster.has_glass() ? "glass"
-                                                             : "--transport on-the-fly") +
+                        "--factors pairs cannot be had with " +
+                            (shared ? std::string("polygons that lie in one place")
+                             : radiosity_.caster.has_glass() ? std::string("glass")
+                                                             : "--transport " + report_.transport) +
                             "; expected hemisphere");
         pairs_ = wanted || (!options_.factors && possible && rows_.size() <= rows_of_pairs);
     }
@@ -207,21 +285,26 @@ class ElementSolve {
     }
 
     ExchangeAreas cast() {
-        return cast_exchange_areas(caster_, rows_, [&, before = report_.rays](std::uint64_t rays) {
+        return cast_exchange_areas(*caster_, rows_, [&, before = report_.rays](std::uint64_t rays) {
             report_.rays = before + rays;
-            Progress progress;
-            progress.phase = "factors";
-            tell(progress);
+            tell_phase("factors");
             return !interrupted();
         });
     }
 
     std::unique_ptr<Transport> make_transport() {
         choose_factors();
-        const double accuracy = pairs_ ? pair_accuracy() : casting_error(caster_.rays());
+        if (report_.transport == "stochastic") {
+            StochasticRaysOptions rays;
+            if (options_.rays) rays.rays_per_row = *options_.rays;
+            rays.weight = radiosity_.columns.weight;
+            rays.seed = options_.column.seed;
+            return std::make_unique<StochasticRays>(scene_, rows_, *caster_, std::move(rays));
+        }
+        const double accuracy = pairs_ ? pair_accuracy() : casting_error(caster_->rays());
         if (report_.transport == "on-the-fly")
             return std::make_unique<OnTheFlyTransport>(
-                scene_, rows_, points_, caster_,
+                scene_, rows_, points_, *caster_,
                 OnTheFlyOptions{options_.column, tolerance_, radiosity_.columns.weight}, accuracy);
         ExchangeAreas areas = pairs_ ? pairwise() : cast();
         if (report_.transport == "sparse")
@@ -236,7 +319,7 @@ class ElementSolve {
             std::copy(R.begin(), R.end(), radiosity_.shot[rows_.elements[i]].begin());
         }
         if (options_.gather_vertices && !interrupted())
-            report_.rays += gather_at_vertices(radiosity_, caster_, solver.reflected(), tolerance_,
+            report_.rays += gather_at_vertices(radiosity_, *caster_, solver.reflected(), tolerance_,
                                                options_.column);
         else
             average_at_vertices(radiosity_, rows_, solver.irradiance());
@@ -267,7 +350,7 @@ class ElementSolve {
     ElementScene scene_;
     ElementRows rows_;
     RowPoints points_;
-    ElementCaster caster_;
+    std::optional<ElementCaster> caster_;
     float tolerance_;
     bool pairs_ = false;  ///< form factors pair by pair, not by rays over hemispheres
     ElementReport report_;

@@ -31,13 +31,13 @@ Options describe(SolveOptions& o) {
         {"solver", &o.solver,
          "how the system is solved: gathering = a rough balance on stored ray hits and one "
          "gathering step where light needs it, shooting = progressive refinement; both divide "
-         "elements where light needs it; the others are for one exitance per element of an even "
-         "mesh",
+         "elements where light needs it; the others are for one exitance per element",
          "", 0, 0, solver_names()},
         {"transport",
          &o.transport,
          "how the solvers of elements hold their form factors: in a matrix, one without its zeros, "
-         "or not at all; default: dense, above 10000 elements sparse",
+         "not at all, as links between clusters and elements, which are divided where light needs "
+         "it, or as fresh rays in every product; default: dense, above 10000 elements sparse",
          "",
          0,
          0,
@@ -59,7 +59,8 @@ Options describe(SolveOptions& o) {
          0,
          {"gather", "average"}},
         {"element-rays", &o.element_rays,
-         "rays over the hemisphere of an element that tell its form factors; default: from --error",
+         "rays over the hemisphere of an element that tell its form factors; of --transport "
+         "stochastic, rays per element and product; default: from --error",
          "", 16, 1 << 20},
         {"groups",
          &o.groups,
@@ -81,7 +82,7 @@ Options describe(SolveOptions& o) {
          "m", 1e-6},
         {"element-size", &o.element_size,
          "patches are divided evenly into elements with edges no longer than this; default: from "
-         "--error, not at all for shooting, which divides where it matters",
+         "--error, not at all for shooting and gathering, which divide where it matters",
          "m", 1e-6},
         {"min-area", &o.min_area,
          "elements are not subdivided below this area; default: from --error", "m²", 0},
@@ -146,8 +147,20 @@ void require_adaptive(const SolveOptions& o) {
 void require_possible(const SolveOptions& o) {
     if (!by_elements(o)) return require_adaptive(o);
     const std::string with = " cannot be had with --solver " + o.solver;
-    if (o.min_area)
-        refuse("--min-area" + with + ": its elements stay as they are; expected --element-size");
+    const bool links = o.transport == "links";
+    if (o.min_area && !links)
+        refuse("--min-area" + with +
+               ": its elements stay as they are; expected --element-size, or --transport links");
+    if (o.transport && !go_together(element_method(o.solver), *o.transport))
+        refuse("--transport " + *o.transport + with +
+               (links
+                    ? ": a sample of its rows costs more than a whole product over links; expected "
+                      "another solver, as --solver jacobi"
+                    : ", which needs the same operator in every step; expected --solver jacobi or "
+                      "stochastic"));
+    if (o.factors && (links || o.transport == "stochastic"))
+        refuse("--factors cannot be had with --transport " + *o.transport +
+               ", which has no matrix; expected dense or sparse");
     if (o.next_shot && o.solver != "southwell")
         refuse("--next-shot" + with +
                ", which does not choose what to shoot next; expected --unshot");

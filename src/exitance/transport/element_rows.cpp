@@ -60,11 +60,16 @@ std::vector<float> open_shares(const ElementScene& scene, std::span<const Elemen
 }  // namespace
 
 ElementRows make_element_rows(const ElementScene& scene) {
+    std::vector<ElementId> leaves;
+    for (const Patch& patch : scene.mesh.patches())
+        scene.mesh.for_leaves(patch.root, [&](ElementId id) { leaves.push_back(id); });
+    return make_element_rows(scene, std::move(leaves));
+}
+
+ElementRows make_element_rows(const ElementScene& scene, std::vector<ElementId> leaves) {
     ElementRows rows;
     const Mesh& mesh = scene.mesh;
-    for (const Patch& patch : mesh.patches())
-        mesh.for_leaves(patch.root, [&](ElementId id) { rows.elements.push_back(id); });
-
+    rows.elements = std::move(leaves);
     std::vector<float> shares =
         open_shares(scene, rows.elements, [&](ElementId id, const auto& add) {
             const auto corners = mesh.corners(mesh[id]);

@@ -33,7 +33,9 @@ struct ElementRows {
     std::size_t size() const { return elements.size(); }
 };
 
+/// All leaves of the mesh, or these of them.
 ElementRows make_element_rows(const ElementScene& scene);
+ElementRows make_element_rows(const ElementScene& scene, std::vector<ElementId> leaves);
 
 /// Places at which the irradiance of an element is evaluated: Gauss points, four in a quadrilateral
 /// and three in a triangle, whose weighted mean is exact for polynomials of the third and second
