@@ -14,6 +14,7 @@
 #include "exitance/transport/exchange_by_casting.h"
 #include "exitance/transport/on_the_fly.h"
 #include "exitance/transport/sparse.h"
+#include "exitance/transport/stochastic_rays.h"
 #include "solve/solve_scenes.h"
 
 namespace exitance {
@@ -91,7 +92,7 @@ struct ClosedBox {
                           radiosity.two_sided()};
     ElementRows rows = make_element_rows(elements);
     RowPoints points = make_row_points(elements, rows);
-    ElementCaster rays{elements, rows, 256, 0};
+    ElementCaster rays{elements, rows, 256, 0}, fine_rays{elements, rows, 4096, 1};
 
     static Scene room() {
         Scene made;
@@ -133,6 +134,53 @@ TEST(Transports, ConserveLightInAClosedRoom) {
         }
         EXPECT_GT(transport->bytes(), 0u);
     }
+}
+
+// Products of fresh rays: each sends all the power that there is, and differs from the others; the
+// mean of many is F.
+TEST(Transports, StochasticRaysAreRightOnAverage) {
+    const ClosedBox box;
+    const std::size_t n = box.rows.size();
+    StochasticRays rays(box.elements, box.rows, box.rays, {64, {1, 0, 0, 0}, 5});
+    EXPECT_TRUE(rays.random());
+    const RowField B = some_exitance(n, 1);
+    RowField exact(n, 1), H(n, 1), mean(n, 1);
+    SparseTransport matrix(
+        cast_exchange_areas(box.fine_rays, box.rows, [](std::uint64_t) { return true; }),
+        box.rows.area, 0.0);
+    matrix.gather(B, exact);
+    const auto distance = [&](const RowField& found) {
+        double square = 0;
+        for (std::size_t i = 0; i < n; ++i)
+            square += std::pow(double(found[RowId(i)][0] / exact[RowId(i)][0]) - 1, 2);
+        return std::sqrt(square / double(n));
+    };
+    constexpr int products = 256;
+    for (int k = 0; k < products; ++k) {
+        rays.gather(B, H);
+        double sent = 0, arrived = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            sent += double(box.rows.area[i] * B[RowId(i)][0]);
+            arrived += double(box.rows.area[i] * H[RowId(i)][0]);
+            mean[RowId(i)][0] += H[RowId(i)][0] / products;
+        }
+        // The rounding of each row's packets, of which there are some hundreds.
+        ASSERT_NEAR(arrived, sent, 0.03 * sent);
+        if (k == 0) {
+            EXPECT_GT(distance(H), 0.03);
+        }
+    }
+    // Some hits a row and product, 256 of them; and the matrix's own noise of 4096 rays.
+    EXPECT_LT(distance(mean), 0.015);
+    EXPECT_EQ(rays.counters().gathers, std::uint64_t{products});
+
+    // A shot is a column: a row's rays all arrive somewhere.
+    RowField shot(n, 1);
+    const std::vector<float> one{1, 0, 0, 0};
+    rays.shoot(RowId(3), one, shot);
+    double arrived = 0;
+    for (std::size_t i = 0; i < n; ++i) arrived += double(box.rows.area[i] * shot[RowId(i)][0]);
+    EXPECT_NEAR(arrived, double(box.rows.area[3]), 1e-4);
 }
 
 TEST(Transports, DoNotDependOnThreads) {

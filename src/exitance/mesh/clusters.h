@@ -58,7 +58,6 @@ class Clusters {
         return node(ElementId(mesh_[element(parent)].first_child.index() + c));
     }
 
-    const Mesh& mesh() const { return mesh_; }
     std::size_t bytes() const { return clusters_.capacity() * sizeof(Cluster); }
 
   private:

@@ -91,6 +91,7 @@ class ElementSolve {
             report_.links = links.links();
             if (!interrupted() && links.refine(solver->reflected())) continue;
             finish(system, *transport, *solver);
+            report_.bytes += links.bytes();
             return report_;
         }
     }

@@ -51,6 +51,10 @@ class LinkRefinement {
 
     std::size_t links() const { return links_.size(); }
     std::uint64_t rays() const { return rays_; }
+    /// Of links, clusters and blockers; not of the transport made from them.
+    std::size_t bytes() const {
+        return links_.capacity() * sizeof(Link) + clusters_.bytes() + exchange_.bytes();
+    }
 
   private:
     /// Per position in the nodes.

@@ -79,12 +79,28 @@ struct LinkExchange::End {
     }
 };
 
-// Between all pairs of places of two ends.
-struct LinkExchange::Visible {
+// Two ends as their places see each other.
+struct LinkExchange::Look {
     using Matrix = std::array<std::array<double, most_places>, most_places>;
+    /// What the places of one end see of the other.
+    struct Seen {
+        std::array<double, most_places> factor{};   ///< nothing between
+        std::array<double, most_places> visible{};  ///< share of it
+        Seen() { visible.fill(1.0); }
+    };
+
     Matrix kernel{};   ///< cosθ₁ cosθ₂ / π r²
-    Matrix through{};  ///< 0 hidden … 1 seen
+    Matrix through{};  ///< 0 hidden … 1 seen, where rays were cast
+    Seen of_a, of_b;
+    double share = 1;   ///< of all that is seen
+    bool agree = true;  ///< all rays found the same
     std::uint64_t rays = 0;
+
+    Look(const End& a, const End& b, bool near_clusters);
+    /// Shares from the rays.
+    void weigh(const End& a, const End& b);
+    /// What rays that agree may have missed, as a share.
+    double missed() const { return agree && rays > 0 ? missed_share / double(rays) : 0.0; }
 };
 
 LinkExchange::LinkExchange(const ElementScene& scene, const Clusters& clusters, std::uint64_t seed)
@@ -163,7 +179,46 @@ Meeting LinkExchange::between(const End& a, const End& b) const {
     return hidden ? Meeting::none : met > 0 ? Meeting::partly : Meeting::seen;
 }
 
-void LinkExchange::cast(const End& a, const End& b, Visible& visible) const {
+LinkExchange::Look::Look(const End& a, const End& b, bool near_clusters) {
+    for (std::size_t i = 0; i < a.count; ++i)
+        for (std::size_t j = 0; j < b.count; ++j) {
+            const End::Place &p = a.places[i], &q = b.places[j];
+            const Vec3 d = q.at - p.at;
+            const double r2 = dot(d, d), up = dot(d, p.normal), down = -dot(d, q.normal);
+            if (!(up > 0 && down > 0)) continue;
+            // Places that are near stand for discs (Wallace et al. 1989), not for points.
+            const double disc = near_clusters ? std::min(p.share * a.area, q.share * b.area) : 0.0;
+            kernel[i][j] = up * down / (r2 * (std::numbers::pi * r2 + disc));
+            of_a.factor[i] += kernel[i][j] * q.share * b.area;
+            of_b.factor[j] += kernel[i][j] * p.share * a.area;
+        }
+    // The exact factor where an end is a polygon.
+    for (std::size_t i = 0; b.element && i < a.count; ++i)
+        of_a.factor[i] = point_polygon_factor(a.places[i].at, a.places[i].normal, b.polygon());
+    for (std::size_t j = 0; a.element && j < b.count; ++j)
+        of_b.factor[j] = point_polygon_factor(b.places[j].at, b.places[j].normal, a.polygon());
+}
+
+void LinkExchange::Look::weigh(const End& a, const End& b) {
+    double seen = 0, all = 0;
+    std::array<double, most_places> all_a{}, all_b{}, seen_a{}, seen_b{};
+    for (std::size_t i = 0; i < a.count; ++i)
+        for (std::size_t j = 0; j < b.count; ++j) {
+            const double k = kernel[i][j] * a.places[i].share * b.places[j].share;
+            const double s = k * through[i][j];
+            seen += s, all += k;
+            all_a[i] += k, all_b[j] += k;
+            seen_a[i] += s, seen_b[j] += s;
+        }
+    share = all > 0 ? seen / all : 1;
+    agree = !(all > 0) || seen <= 0 || seen >= (1 - 1e-6) * all;
+    for (std::size_t i = 0; i < a.count; ++i)
+        of_a.visible[i] = all_a[i] > 0 ? seen_a[i] / all_a[i] : share;
+    for (std::size_t j = 0; j < b.count; ++j)
+        of_b.visible[j] = all_b[j] > 0 ? seen_b[j] / all_b[j] : share;
+}
+
+void LinkExchange::cast(const End& a, const End& b, Look& look) const {
     const RayCaster& caster = scene_.caster;
     const auto own = [&](const End::Place& place) {
         return scene_.owners.owns(place.face->polygon, place.face->back,
@@ -182,15 +237,15 @@ void LinkExchange::cast(const End& a, const End& b, Visible& visible) const {
         const std::uint32_t blocked =
             caster.has_glass() ? caster.occluded(rays, through) : caster.occluded(rays);
         for (std::size_t k = 0; k < lane; ++k)
-            visible.through[pair[k][0]][pair[k][1]] = blocked >> k & 1u ? 0.0 : double(through[k]);
-        visible.rays += lane;
+            look.through[pair[k][0]][pair[k][1]] = blocked >> k & 1u ? 0.0 : double(through[k]);
+        look.rays += lane;
         lane = 0, rays.active = 0;
     };
     for (std::size_t i = 0; i < a.count; ++i) {
         const bool own_a = own(a.places[i]);
         for (std::size_t j = 0; j < b.count; ++j) {
-            visible.through[i][j] = 0;
-            if (!(visible.kernel[i][j] > 0) || !own_a || !own_b[j]) continue;
+            look.through[i][j] = 0;
+            if (!(look.kernel[i][j] > 0) || !own_a || !own_b[j]) continue;
             const Vec3 from = a.places[i].at + a.places[i].normal * caster.clearance();
             const Vec3 to = b.places[j].at + b.places[j].normal * caster.clearance();
             pair[lane] = {i, j};
@@ -199,33 +254,26 @@ void LinkExchange::cast(const End& a, const End& b, Visible& visible) const {
         }
     }
     flush();
+    look.weigh(a, b);
 }
 
 namespace {
 
-/// What places see, one number each.
-struct Seen {
-    std::array<double, most_places> factor{};   ///< nothing between
-    std::array<double, most_places> visible{};  ///< share of it
-};
-
 // Mean of factor × visible share and its standard deviation over the places of an end.
-template <class Places>
-std::array<double, 2> mean_and_spread(const Seen& seen, const Places& places, std::size_t count) {
+std::array<double, 2> mean_and_spread(const auto& seen, const auto& end) {
     double mean = 0, square = 0;
-    for (std::size_t i = 0; i < count; ++i)
-        mean += places[i].share * seen.factor[i] * seen.visible[i];
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < end.count; ++i)
+        mean += end.places[i].share * seen.factor[i] * seen.visible[i];
+    for (std::size_t i = 0; i < end.count; ++i) {
         const double d = seen.factor[i] * seen.visible[i] - mean;
-        square += places[i].share * d * d;
+        square += end.places[i].share * d * d;
     }
     return {mean, std::sqrt(square)};
 }
 
-template <class End>
-void note_departures(const Seen& seen, const End& end,
+void note_departures(const auto& seen, const auto& end,
                      std::array<float, Cluster::places_count>& off) {
-    const double mean = mean_and_spread(seen, end.places, end.count)[0];
+    const double mean = mean_and_spread(seen, end)[0];
     for (std::size_t i = 0; i < end.count; ++i)
         off[i] = static_cast<float>(seen.factor[i] * seen.visible[i] - mean);
 }
@@ -245,92 +293,42 @@ Meeting LinkExchange::measure(NodeId node_a, NodeId node_b, double open_a, doubl
 
     const bool polygons = a.element && b.element;
     const double distance = length(a.centre - b.centre), reach = a.radius + b.radius;
-    double free = -1;  // exchange area with nothing between
-    for (int look = 0;; ++look) {
-        Visible visible;
-        Seen seen_a, seen_b;
-        for (std::size_t i = 0; i < a.count; ++i)
-            for (std::size_t j = 0; j < b.count; ++j) {
-                const End::Place &p = a.places[i], &q = b.places[j];
-                const Vec3 d = q.at - p.at;
-                const double r2 = dot(d, d), up = dot(d, p.normal), down = -dot(d, q.normal);
-                if (!(up > 0 && down > 0)) continue;
-                // Places that are near stand for discs (Wallace et al. 1989), not for points.
-                const double disc =
-                    distance < apart * reach ? std::min(p.share * a.area, q.share * b.area) : 0.0;
-                const double k = up * down / (r2 * (std::numbers::pi * r2 + disc));
-                visible.kernel[i][j] = k;
-                seen_a.factor[i] += k * q.share * b.area;
-                seen_b.factor[j] += k * p.share * a.area;
-            }
-        // The exact factor where an end is a polygon.
-        for (std::size_t i = 0; b.element && i < a.count; ++i)
-            seen_a.factor[i] =
-                point_polygon_factor(a.places[i].at, a.places[i].normal, b.polygon());
-        for (std::size_t j = 0; a.element && j < b.count; ++j)
-            seen_b.factor[j] =
-                point_polygon_factor(b.places[j].at, b.places[j].normal, a.polygon());
-        if (free < 0) {
-            seen_a.visible.fill(1.0), seen_b.visible.fill(1.0);
-            const double by_a = a.area * mean_and_spread(seen_a, a.places, a.count)[0];
-            const double by_b = b.area * mean_and_spread(seen_b, b.places, b.count)[0];
-            free = polygons && distance < near * reach
-                       ? exchange_area(a.polygon(), b.polygon(), 1e-3)
-                       : 0.5 * (by_a + by_b);
-        }
-
-        double share = 1, missed = 0;
-        bool agree = true;
-        if (meeting == Meeting::seen) {
-            note_departures(seen_a, a, link.off_a);
-            note_departures(seen_b, b, link.off_b);
-        } else {
-            cast(a, b, visible);
-            rays += visible.rays;
-            double seen = 0, all = 0;
-            std::array<double, most_places> all_a{}, all_b{}, seen_of_a{}, seen_of_b{};
-            for (std::size_t i = 0; i < a.count; ++i)
-                for (std::size_t j = 0; j < b.count; ++j) {
-                    const double k = visible.kernel[i][j] * a.places[i].share * b.places[j].share;
-                    const double s = k * visible.through[i][j];
-                    seen += s, all += k;
-                    all_a[i] += k, all_b[j] += k;
-                    seen_of_a[i] += s, seen_of_b[j] += s;
-                }
-            share = all > 0 ? seen / all : 1;
-            agree = !(all > 0) || seen <= 0 || seen >= (1 - 1e-6) * all;
-            if (agree && visible.rays > 0) missed = missed_share / double(visible.rays);
-            for (std::size_t i = 0; i < a.count; ++i)
-                seen_a.visible[i] = all_a[i] > 0 ? seen_of_a[i] / all_a[i] : share;
-            for (std::size_t j = 0; j < b.count; ++j)
-                seen_b.visible[j] = all_b[j] > 0 ? seen_of_b[j] / all_b[j] : share;
-            if (look == 0)
-                note_departures(seen_a, a, link.off_a), note_departures(seen_b, b, link.off_b);
-            // More rays, from more places of elements.
-            if (!agree && look == 0 && (a.element || b.element)) {
-                const std::uint64_t key = hash_bits(seed_, node_a.value, node_b.value);
-                a.spread_places(key);
-                b.spread_places(hash_bits(key));
-                continue;
-            }
-        }
-        link.area = static_cast<float>(free * share);
-        const double deviation_a = mean_and_spread(seen_a, a.places, a.count)[1];
-        const double deviation_b = mean_and_spread(seen_b, b.places, b.count)[1];
-        link.spread_a = static_cast<float>(std::hypot(deviation_a, missed * free / a.area));
-        link.spread_b = static_cast<float>(std::hypot(deviation_b, missed * free / b.area));
-        break;
+    const bool bound = !polygons && distance < apart * reach;
+    Look look(a, b, bound);
+    // Exchange area with nothing between.
+    const double free = polygons && distance < near * reach
+                            ? exchange_area(a.polygon(), b.polygon(), 1e-3)
+                            : 0.5 * (a.area * mean_and_spread(look.of_a, a)[0] +
+                                     b.area * mean_and_spread(look.of_b, b)[0]);
+    // Places of a cluster may all look away where some of it does not.
+    if (polygons && !(free > 0)) return Meeting::none;
+    if (meeting == Meeting::partly) cast(a, b, look);
+    rays += look.rays;
+    note_departures(look.of_a, a, link.off_a);
+    note_departures(look.of_b, b, link.off_b);
+    if (!look.agree && (a.element || b.element)) {  // more rays, from more places of elements
+        const std::uint64_t key = hash_bits(seed_, node_a.value, node_b.value);
+        a.spread_places(key);
+        b.spread_places(hash_bits(key));
+        look = Look(a, b, bound);
+        cast(a, b, look);
+        rays += look.rays;
     }
-    if (!polygons && distance < apart * reach) {
-        link.bound = true;  // too near for places to tell much: F ≤ 1 and A_a F ≤ A_b bound its
-                            // mean square over a.
+    link.area = static_cast<float>(free * look.share);
+    link.bound = bound;
+    if (bound) {
+        // Too near for places to tell much: F ≤ 1 and A_a F ≤ A_b bound its mean square over a.
         link.area = std::min(link.area, static_cast<float>(std::min(open_a, open_b)));
         link.spread_a = static_cast<float>(std::sqrt(std::min(1.0, b.area / a.area)));
         link.spread_b = static_cast<float>(std::sqrt(std::min(1.0, a.area / b.area)));
         return Meeting::partly;
     }
-    // Places of a cluster may all look away where some of it does not.
-    if (polygons && !(free > 0)) return Meeting::none;
+    const auto spread = [&](const Look::Seen& seen, const End& end) {
+        return static_cast<float>(
+            std::hypot(mean_and_spread(seen, end)[1], look.missed() * free / end.area));
+    };
+    link.spread_a = spread(look.of_a, a);
+    link.spread_b = spread(look.of_b, b);
     return meeting;
 }
 

@@ -52,8 +52,9 @@ class LinkExchange {
     struct End;
     End end_of(NodeId node, double open) const;
     Meeting between(const End& a, const End& b) const;
-    struct Visible;
-    void cast(const End& a, const End& b, Visible& visible) const;
+    struct Look;
+    /// Rays between all pairs of places that face each other.
+    void cast(const End& a, const End& b, Look& look) const;
 
     ElementScene scene_;
     const Clusters& clusters_;
