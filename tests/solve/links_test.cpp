@@ -168,6 +168,7 @@ TEST(Links, KeepWhatThereIsWhenTimeIsOver) {
     const Solution solution = light(scene, options);
     EXPECT_TRUE(solve_scenes::all_finite(solution));
     EXPECT_GT(solution.energy.emitted, 0);
+    EXPECT_LT(std::abs(solution.energy.imbalance()), 0.05) << "what is not solved yet is unshot";
     EXPECT_LT(clock.seconds(), 20) << "a slow machine, and the lamps' light on all vertices";
 }
 

@@ -92,6 +92,12 @@ class ElementSolve {
             if (!interrupted() && links.refine(solver->reflected())) continue;
             finish(system, *transport, *solver);
             report_.bytes += links.bytes();
+            if (solver->sweeps() == 0 && links.worth_showing() &&
+                interrupted()) {  // what refining has found meanwhile
+                darken();
+                send(links.reflected());
+                average_at_vertices(radiosity_, rows_, links.irradiance());
+            }
             return report_;
         }
     }
@@ -122,7 +128,7 @@ class ElementSolve {
         out.divide = options_.divide;
         out.column = options_.column;
         out.each_round = [this](const LinkRefinement& links) {
-            if (!options_.light_meanwhile) return;
+            if (!options_.light_meanwhile || !links.worth_showing()) return;
             rows_ = links.rows();
             light_meanwhile(links.irradiance());
         };
@@ -314,16 +320,20 @@ class ElementSolve {
     }
 
     void light_vertices(const ElementSolver& solver) {
-        radiosity_.emission_shot = true;
-        for (std::size_t i = 0; i < rows_.size(); ++i) {
-            const auto R = solver.reflected()[RowId(i)];
-            std::copy(R.begin(), R.end(), radiosity_.shot[rows_.elements[i]].begin());
-        }
+        send(solver.reflected());
         if (options_.gather_vertices && !interrupted())
             report_.rays += gather_at_vertices(radiosity_, *caster_, solver.reflected(), tolerance_,
                                                options_.column);
         else
             average_at_vertices(radiosity_, rows_, solver.irradiance());
+    }
+
+    void send(const RowField& reflected) {
+        radiosity_.emission_shot = true;
+        for (std::size_t i = 0; i < rows_.size(); ++i) {
+            const auto R = reflected[RowId(i)];
+            std::copy(R.begin(), R.end(), radiosity_.shot[rows_.elements[i]].begin());
+        }
     }
 
     double measured_residual(const ElementSystem& system, Transport& transport,

@@ -21,6 +21,10 @@ constexpr std::size_t at_once = 8192;
 constexpr double overestimate = 1.5;
 // Light is gathered over links once they are right to this share of it: before, most are guesses.
 constexpr double right_enough = 0.25;
+// To this share they are something to show.
+constexpr double nearly_right = 0.1;
+// Links that were enough for the light as it was are, if they are off by this much with the solved.
+constexpr double still_enough = 1.1;
 
 }  // namespace
 
@@ -83,13 +87,21 @@ void LinkRefinement::find_rows() {
     nodes_ = std::make_unique<LinkNodes>(clusters_, rows_);
 }
 
-RowField LinkRefinement::direct() const {
+RowField LinkRefinement::of_rows(const ElementField& field) const {
     RowField out(rows_.size(), radiosity_.columns.count);
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-        const auto D = direct_[rows_.elements[i]];
-        std::copy(D.begin(), D.end(), out[RowId(i)].begin());
+        const auto row = field[rows_.elements[i]];
+        std::copy(row.begin(), row.end(), out[RowId(i)].begin());
     }
     return out;
+}
+
+RowField LinkRefinement::direct() const {
+    return of_rows(direct_);
+}
+
+RowField LinkRefinement::reflected() const {
+    return of_rows(reflected_);
 }
 
 RowField LinkRefinement::irradiance() const {
@@ -114,11 +126,10 @@ void LinkRefinement::reflect() {
 }
 
 void LinkRefinement::gather() {
+    gathered_ = true;
     const std::unique_ptr<LinkTransport> operator_now = transport();
-    RowField R(rows_.size(), radiosity_.columns.count), H(rows_.size(), radiosity_.columns.count);
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-        std::copy_n(reflected_[rows_.elements[i]].begin(), R.stride(), R[RowId(i)].begin());
-    operator_now->gather(R, H);
+    RowField H(rows_.size(), radiosity_.columns.count);
+    operator_now->gather(reflected(), H);
     for (std::size_t i = 0; i < rows_.size(); ++i)
         std::copy_n(H[RowId(i)].begin(), H.stride(), received_[rows_.elements[i]].begin());
     reflect();
@@ -362,6 +373,7 @@ bool LinkRefinement::divide_elements(double threshold, const State& state) {
 
 bool LinkRefinement::refine(const RowField& reflected) {
     if (rows_.size() == 0) return false;
+    const double enough = (begun_ ? still_enough : 1.0) * overestimate * options_.error;
     if (begun_)
         for (std::size_t i = 0; i < rows_.size(); ++i)
             std::copy_n(reflected[RowId(i)].begin(), reflected.stride(),
@@ -371,12 +383,12 @@ bool LinkRefinement::refine(const RowField& reflected) {
     for (bool changed = false;; changed = true) {
         if (options_.each_round) options_.each_round(*this);
         const State now = state();
-        const double all = allowed(), enough = overestimate * options_.error;
+        const double all = allowed();
+        worth_showing_ = gathered_ && now.total <= nearly_right * nearly_right * all;
         if (begun_ && now.total <= enough * enough * all) return changed;
         if (options_.go_on && !options_.go_on(rays_)) return changed;
         // Links that contribute more than others do.
-        const double threshold =
-            now.total / double(std::max<std::size_t>(1, links_.size() + rows_.size()));
+        const double threshold = now.total / double(links_.size() + rows_.size());
         const std::size_t before = links_.size();
         if (!replace_links(threshold, now)) return changed;
         const bool divided = divide_elements(threshold, now);

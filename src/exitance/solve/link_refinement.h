@@ -45,8 +45,11 @@ class LinkRefinement {
     /// Leaves of the mesh as it is now, and the lamps' light on them.
     const ElementRows& rows() const { return rows_; }
     RowField direct() const;
-    /// D and what the links have brought so far.
+    /// D and what the links have brought so far, and R for it.
     RowField irradiance() const;
+    RowField reflected() const;
+    /// Whether these two are better than the lamps' light alone; at first R is an ambient guess.
+    bool worth_showing() const { return worth_showing_; }
     std::unique_ptr<LinkTransport> transport() const;
 
     std::size_t links() const { return links_.size(); }
@@ -73,6 +76,7 @@ class LinkRefinement {
         NodeId a, b;
     };
 
+    RowField of_rows(const ElementField& field) const;
     void admit_leaves(const std::vector<ElementId>& leaves);
     void find_rows();
     void reflect();
@@ -95,7 +99,7 @@ class LinkRefinement {
     Clusters clusters_;
     LinkExchange exchange_;
     std::vector<Link> links_;
-    bool begun_ = false;
+    bool begun_ = false, gathered_ = false, worth_showing_ = false;
 
     ElementField direct_, received_, reflected_;  ///< per leaf: D, F R, R
     std::vector<float> uneven_;                   ///< per leaf: standard deviation of D
