@@ -58,9 +58,10 @@ std::string row(const SolveOptions& options, const Run& done, const Solution& re
     const double bytes =
         counters.at("bytes") + (transport == counters.end() ? 0.0 : transport->second);
     return fmt::format("{:<13} {:<11} {:>7} {:>9} {:>8.2f} {:>9} {:>10.3f} {:>9.1f}\n",
-                       options.solver, options.transport.value_or("on-the-fly"), count("sweeps"),
-                       human_count(counters.at("rays")), done.cpu_seconds, count("residual"),
-                       100 * rms_difference(done.solution, reference), bytes / 1e6);
+                       solver_of(options), options.transport.value_or("on-the-fly"),
+                       count("sweeps"), human_count(counters.at("rays")), done.cpu_seconds,
+                       count("residual"), 100 * rms_difference(done.solution, reference),
+                       bytes / 1e6);
 }
 
 }  // namespace

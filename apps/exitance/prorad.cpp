@@ -146,6 +146,8 @@ class ProradCommand {
             options_.unshot = 0;  // the threshold alone decides
         }
         given_.apply({});
+        // What the original does: progressive refinement.
+        if (!options_.solver) options_.solver = "shooting";
         if (no_occlusion_) options_.occlusion = false;
     }
 

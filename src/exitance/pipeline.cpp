@@ -67,7 +67,7 @@ ShootingOptions shooting_options(const SolveOptions& options, double extent) {
 
 ElementOptions element_options(const SolveOptions& options, double extent) {
     ElementOptions out;
-    out.solver = options.solver;
+    out.solver = solver_of(options);
     out.transport = options.transport;
     out.factors = options.factors;
     if (options.element_rays) out.rays = static_cast<int>(*options.element_rays);
@@ -107,6 +107,7 @@ Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
 }
 
 std::map<std::string, std::string> used(SolveOptions options) {
+    options.solver = solver_of(options);
     std::map<std::string, std::string> out;
     for (const Option& option : describe(options)) {
         if (option.name == "threads") continue;  // the bytes do not depend on it
@@ -157,7 +158,7 @@ Counters counters_of(const Radiosity& radiosity) {
 
 // Gathering usually does better than what is demanded of it, and goes on from a rough solution at
 // little cost.
-constexpr double first_demand = 2;
+constexpr double first_demand = 1.4;
 
 /// What every way to solve is given.
 struct Task {
@@ -268,9 +269,9 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     if (const auto longest = element_size(options, size)) divide_evenly(radiosity, *longest);
     const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
                     clock,   observe, snapshots};
-    const Done done = options.solver == adaptive_gathering ? gather_adaptively(radiosity, task)
-                      : by_elements(options)               ? solve_by_elements(radiosity, task)
-                                                           : shoot_adaptively(radiosity, task);
+    const Done done = solver_of(options) == adaptive_gathering ? gather_adaptively(radiosity, task)
+                      : by_elements(options)                   ? solve_by_elements(radiosity, task)
+                                                               : shoot_adaptively(radiosity, task);
 
     Solution solution = extract_solution(radiosity);
     solution.energy = done.energy;

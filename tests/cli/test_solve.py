@@ -54,7 +54,8 @@ position = [0, HEIGHT, 0]
 """
         for height, off in ("0.0005", True), ("1", False):
             scene = self.write("lamp.toml", project.replace("HEIGHT", height))
-            said = self.succeed("solve", scene, "-o", "lamp.glb", *QUICK).stdout
+            said = self.succeed("solve", scene, "-o", "lamp.glb", *QUICK, "--solver",
+                                "shooting").stdout
             self.assertEqual("  warning the light that arrived is " in said, off, said)
             self.assertEqual("shines through it" in self.succeed("info", scene).stdout, off)
 
@@ -119,11 +120,11 @@ position = [0, HEIGHT, 0]
     def test_refuses_what_cannot_be_had_together(self):
         output = ("-o", self.output)
         for message, *arguments in (
-                (r"--transport dense cannot .* shooting: .* divides .* southwell",
+                (r"--transport dense cannot .* gathering: .* divides .* southwell",
                  "--transport", "dense"),
-                (r"--vertices cannot .* shooting, .* expected .* jacobi", "--vertices", "gather"),
-                (r"--element-rays cannot .* shooting", "--element-rays", "64"),
-                (r"--factors cannot .* shooting", "--factors", "pairs"),
+                (r"--vertices cannot .* gathering, .* expected .* jacobi", "--vertices", "gather"),
+                (r"--element-rays cannot .* gathering", "--element-rays", "64"),
+                (r"--factors cannot .* gathering", "--factors", "pairs"),
                 (r"--factors pairs cannot .* --transport on-the-fly; expected hemisphere",
                  "--solver", "jacobi", "--transport", "on-the-fly", "--factors", "pairs"),
                 (r"--min-area cannot .* krylov: .* expected --element-size",
@@ -141,7 +142,7 @@ position = [0, HEIGHT, 0]
                  "disk"),
                 (r"--transport dense: a matrix of \d+ elements takes [\d.]+ GiB, expected at most 4",
                  "--solver", "jacobi", "--transport", "dense", "--element-size", "0.008"),
-                (r"--solver: 'jakobi' is not allowed, expected one of shooting, jacobi",
+                (r"--solver: 'jakobi' is not allowed, expected one of gathering, shooting, jacobi",
                  "--solver", "jakobi")):
             self.refuse(WRONG_USE, message, "solve", self.scene, *output, *arguments)
 

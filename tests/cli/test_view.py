@@ -340,11 +340,11 @@ class Live(Viewing):
             else:
                 phases.append(data["phase"])
                 if data["paused"]:
-                    shots = data["shots"]
+                    rays = data["rays"]
                     time.sleep(0.5)
                     self.assertEqual(self.ask("command", "POST", '{"command": "resume"}')[0], 204)
                 elif solutions >= 3:
-                    self.assertGreater(data["shots"], shots) if data["phase"] != "done" else None
+                    self.assertGreater(data["rays"], rays) if data["phase"] != "done" else None
                     self.assertEqual(self.ask("command", "POST", '{"command": "stop"}')[0], 204)
                 if data["phase"] == "done":
                     break

@@ -252,7 +252,9 @@ TEST(Pipeline, ProgressFallsToItsTarget) {
     double last_seconds = 0, left = 1;
     std::uint64_t shots = 0;
     std::optional<double> target;
-    light(two_lamp_room(), quick(), [&](const Progress& progress) {
+    SolveOptions options = quick();
+    options.solver = "shooting";
+    light(two_lamp_room(), options, [&](const Progress& progress) {
         EXPECT_GE(progress.seconds, last_seconds);
         EXPECT_GE(progress.shots, shots);
         last_seconds = progress.seconds, shots = progress.shots;

@@ -9,9 +9,8 @@ namespace exitance {
 namespace {
 
 std::vector<std::string> solver_names() {
-    std::vector<std::string> names{std::string(adaptive_shooting)};
+    std::vector<std::string> names{std::string(adaptive_gathering), std::string(adaptive_shooting)};
     for (const ElementMethod& method : element_methods()) names.emplace_back(method.name);
-    names.emplace_back(adaptive_gathering);
     return names;
 }
 
@@ -31,7 +30,9 @@ Options describe(SolveOptions& o) {
         {"solver", &o.solver,
          "how the system is solved: gathering = a rough balance on stored ray hits and one "
          "gathering step where light needs it, shooting = progressive refinement; both divide "
-         "elements where light needs it; the others are for one exitance per element",
+         "elements where light needs it; the others are for one exitance per element; default: "
+         "gathering, or shooting where --unshot, --next-shot, --no-overshoot, --no-occlusion or "
+         "--form-factor disk ask for it",
          "", 0, 0, solver_names()},
         {"transport",
          &o.transport,
@@ -106,8 +107,22 @@ Options describe(SolveOptions& o) {
     };
 }
 
+namespace {
+
+bool asks_for_shooting(const SolveOptions& o) {
+    return o.unshot || o.next_shot || !o.overshoot || !o.occlusion || o.form_factor != "lambert";
+}
+
+}  // namespace
+
+std::string solver_of(const SolveOptions& options) {
+    return options.solver.value_or(
+        std::string(asks_for_shooting(options) ? adaptive_shooting : adaptive_gathering));
+}
+
 bool by_elements(const SolveOptions& options) {
-    return options.solver != adaptive_shooting && options.solver != adaptive_gathering;
+    const std::string solver = solver_of(options);
+    return solver != adaptive_shooting && solver != adaptive_gathering;
 }
 
 bool of_elements(const std::string& option) {
@@ -119,7 +134,7 @@ namespace {
 
 // Of the solvers that divide elements as light needs it.
 void require_adaptive(const SolveOptions& o) {
-    const std::string with = " cannot be had with --solver " + o.solver;
+    const std::string with = " cannot be had with --solver " + solver_of(o);
     const std::string elements = "; expected a solver of elements, as --solver jacobi";
     if (o.transport && *o.transport != "on-the-fly")
         refuse("--transport " + *o.transport + with +
@@ -129,7 +144,7 @@ void require_adaptive(const SolveOptions& o) {
     if (o.vertices)
         refuse("--vertices" + with + ", which solves for the vertices themselves" + elements);
     if (o.element_rays) refuse("--element-rays" + with + ", which has no rows" + elements);
-    if (o.solver == adaptive_shooting) return;
+    if (solver_of(o) == adaptive_shooting) return;
     const std::string shooting = "; expected --solver shooting";
     if (o.unshot) refuse("--unshot" + with + ", which is done with all light at once" + shooting);
     if (o.next_shot) refuse("--next-shot" + with + ", which does not shoot" + shooting);
@@ -146,12 +161,12 @@ void require_adaptive(const SolveOptions& o) {
 
 void require_possible(const SolveOptions& o) {
     if (!by_elements(o)) return require_adaptive(o);
-    const std::string with = " cannot be had with --solver " + o.solver;
+    const std::string with = " cannot be had with --solver " + solver_of(o);
     const bool links = o.transport == "links";
     if (o.min_area && !links)
         refuse("--min-area" + with +
                ": its elements stay as they are; expected --element-size, or --transport links");
-    if (o.transport && !go_together(element_method(o.solver), *o.transport))
+    if (o.transport && !go_together(element_method(solver_of(o)), *o.transport))
         refuse("--transport " + *o.transport + with +
                (links
                     ? ": a sample of its rows costs more than a whole product over links; expected "
@@ -161,7 +176,7 @@ void require_possible(const SolveOptions& o) {
     if (o.factors && (links || o.transport == "stochastic"))
         refuse("--factors cannot be had with --transport " + *o.transport +
                ", which has no matrix; expected dense or sparse");
-    if (o.next_shot && o.solver != "southwell")
+    if (o.next_shot && solver_of(o) != "southwell")
         refuse("--next-shot" + with +
                ", which does not choose what to shoot next; expected --unshot");
     if (!o.occlusion)

@@ -13,7 +13,7 @@ namespace exitance {
 struct SolveOptions {
     double error = 0.02;
     std::optional<double> time;
-    std::string solver = "shooting";
+    std::optional<std::string> solver;  ///< by default as solver_of() says
     std::optional<std::string> transport;
     std::optional<std::string> factors;
     std::optional<std::string> vertices;
@@ -36,6 +36,10 @@ struct SolveOptions {
 /// Every member of `options` with its name, unit, range and reason; values are read and written
 /// through the result.
 Options describe(SolveOptions& options);
+
+/// The solver that was asked for; by default gathering, or shooting where an option asks for what
+/// only it does.
+std::string solver_of(const SolveOptions& options);
 
 /// Whether the solver is one of those for one exitance per element (element_methods.h).
 bool by_elements(const SolveOptions& options);
