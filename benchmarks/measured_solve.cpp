@@ -22,6 +22,7 @@ Request::Request(int argc, const char* const* argv) {
     const std::string usage = "SCENE [--bounces N] [--repeat N] [--OPTION VALUE]...";
     if (argc < 2 || argc % 2 != 0) throw Error(Fault::wrong_use, "expected " + usage);
     scene = argv[1];
+    options.solver = "shooting";
     Options known = describe(options);
     std::uint64_t most_bounces = 0;
     known.push_back({"bounces", &most_bounces, "stop when so many patches have shot", "", 1});

@@ -105,18 +105,6 @@ TEST(Gathering, AgreesWithShooting) {
     }
 }
 
-TEST(Gathering, BrightAndDarkScenesAreTheSameButForScale) {
-    Scene faint = two_lamp_room(), bright = two_lamp_room();
-    for (Material& m : faint.materials)
-        for (double& e : m.exitance) e *= 0x1.0p-20;
-    for (Material& m : bright.materials)
-        for (double& e : m.exitance) e *= 0x1.0p20;
-    const Solution a = light(faint, gathering()), b = light(bright, gathering());
-    ASSERT_EQ(a.positions.size(), b.positions.size());
-    for (std::size_t i = 0; i < a.irradiance.values().size(); ++i)
-        EXPECT_EQ(a.irradiance.values()[i] * 0x1.0p40f, b.irradiance.values()[i]);
-}
-
 TEST(Gathering, LightIsNotLost) {
     for (const bool block : {false, true}) {
         const Solution solution = light(two_lamp_room(block), gathering(0.02));

@@ -23,8 +23,10 @@ using exitance::testing::add_polygon;
 using exitance::testing::add_square;
 using exitance::testing::add_surface;
 
+// Most of these are about shooting; gathering_test.cpp is about the default.
 SolveOptions quick() {
     SolveOptions options;
+    options.solver = "shooting";
     options.error = 0.05;
     return options;
 }
@@ -252,9 +254,7 @@ TEST(Pipeline, ProgressFallsToItsTarget) {
     double last_seconds = 0, left = 1;
     std::uint64_t shots = 0;
     std::optional<double> target;
-    SolveOptions options = quick();
-    options.solver = "shooting";
-    light(two_lamp_room(), options, [&](const Progress& progress) {
+    light(two_lamp_room(), quick(), [&](const Progress& progress) {
         EXPECT_GE(progress.seconds, last_seconds);
         EXPECT_GE(progress.shots, shots);
         last_seconds = progress.seconds, shots = progress.shots;
@@ -369,16 +369,20 @@ TEST(Pipeline, ASingleTriangle) {
 
 TEST(Pipeline, BrightAndDarkScenesAreTheSameButForScale) {
     // A solve may not know in which unit its light is.
-    Scene faint = two_lamp_room(), bright = two_lamp_room();
-    for (Material& m : faint.materials)
-        for (double& e : m.exitance) e *= 0x1.0p-20;
-    for (Material& m : bright.materials)
-        for (double& e : m.exitance) e *= 0x1.0p20;
-    const Solution a = light(faint, quick()), b = light(bright, quick());
-    ASSERT_EQ(a.positions.size(), b.positions.size());
-    for (std::size_t v = 0; v < a.positions.size(); ++v)
-        for (std::size_t c = 0; c < a.columns(); ++c)
-            EXPECT_EQ(a.irradiance[VertexId(v)][c] * 0x1.0p40f, b.irradiance[VertexId(v)][c]);
+    for (const char* solver : {"shooting", "gathering"}) {
+        SolveOptions options = quick();
+        options.solver = solver;
+        Scene faint = two_lamp_room(), bright = two_lamp_room();
+        for (Material& m : faint.materials)
+            for (double& e : m.exitance) e *= 0x1.0p-20;
+        for (Material& m : bright.materials)
+            for (double& e : m.exitance) e *= 0x1.0p20;
+        const Solution a = light(faint, options), b = light(bright, options);
+        ASSERT_EQ(a.positions.size(), b.positions.size()) << solver;
+        for (std::size_t v = 0; v < a.positions.size(); ++v)
+            for (std::size_t c = 0; c < a.columns(); ++c)
+                EXPECT_EQ(a.irradiance[VertexId(v)][c] * 0x1.0p40f, b.irradiance[VertexId(v)][c]);
+    }
 }
 
 TEST(Pipeline, LargeAndSmallScenesAreTheSameButForScale) {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "exitance/run/random.h"
+#include "exitance/solve/refine.h"
 
 namespace exitance {
 
@@ -15,8 +16,6 @@ namespace {
 // Of the tolerance: what the noise of a gather may be, and how far the middle of an element may be
 // from interpolation.
 constexpr float noise_share = 0.5f, threshold = 0.5f;
-// How many times the tolerance a small element may be wrong by.
-constexpr float most_tolerant = 8;
 // What noise explains is no reason to divide.
 constexpr float noise_deviations = 1.5;
 // Vertices of small elements may be noisier, too, within reason.
@@ -102,8 +101,7 @@ float IndirectLight::light(VertexId v) const {
 }
 
 float IndirectLight::tolerance(const Element& element) const {
-    const float share = std::sqrt(options_.area / element.area);
-    return options_.tolerance * std::clamp(share, 1.0f, most_tolerant);
+    return tolerance_of(options_.tolerance, options_.area, element.area);
 }
 
 std::uint32_t IndirectLight::rays_for(const Element& element) const {

@@ -25,8 +25,6 @@ constexpr float shadow_threshold = 0.2f, smooth_threshold = 0.25f;
 constexpr float gradient_threshold = 0.5f;
 // A thorough test looks at patches and their children whatever their corners say.
 constexpr int thorough_level = 1;
-// How many times the tolerance a small element may be wrong by.
-constexpr float most_tolerant = 8;
 // The least side of a long element, in terms of its length, that its smallness is judged by.
 constexpr double longest_aspect = 8;
 constexpr std::size_t batch_size = 1024;
@@ -82,11 +80,8 @@ class Refinement {
   private:
     float light(VertexId v) const { return radiosity_.columns.luminance(radiosity_.irradiance[v]); }
 
-    // What counts is the sum over elements of error² × area: each may contribute the same, but no
-    // place may be very wrong.
     float tolerance(const Element& element) const {
-        const float share = std::sqrt(options_.area / element.area);
-        return options_.tolerance * std::clamp(share, 1.0f, most_tolerant);
+        return tolerance_of(options_.tolerance, options_.area, element.area);
     }
 
     float gross_departure(const Element& element) const {

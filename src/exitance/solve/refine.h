@@ -3,6 +3,7 @@
 // their corners says.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <vector>
@@ -27,6 +28,13 @@ struct RefineOptions {
     float gross = INFINITY;
     std::function<bool()> interrupted{};  ///< true: the mesh stays as it is so far
 };
+
+/// What counts is the sum over elements of error² × area: each may contribute the same, so one of
+/// `area` may be wrong by `tolerance` × √(`whole` / `area`), but no place may be very wrong.
+inline float tolerance_of(float tolerance, float whole, float area) {
+    constexpr float most = 8;
+    return tolerance * std::clamp(std::sqrt(whole / area), 1.0f, most);
+}
 
 /// Lights any receivers with everything that has been shot so far, into a reset `Received`.
 /// Returns rays cast.
