@@ -161,6 +161,13 @@ std::string SolutionReport::json() const {
                {"absorbed_behind", energy.absorbed_behind},
                {"escaped", energy.escaped},
                {"unshot", energy.unshot}}}};
+    out["refined_for"] = nullptr;
+    if (solution_.refined_for) {
+        out["refined_for"] = nlohmann::json::object();
+        if (solution_.refined_for->camera)
+            out["refined_for"]["camera"] = *solution_.refined_for->camera;
+        if (solution_.refined_for->grid) out["refined_for"]["grid"] = *solution_.refined_for->grid;
+    }
     out["error"] = nullptr;
     if (solution_.error)
         out["error"] = {{"rms", solution_.error->rms},

@@ -38,9 +38,13 @@ std::string SolutionReport::text() const {
         flux(energy.emitted), flux(energy.absorbed), flux(energy.absorbed_behind),
         flux(energy.escaped), flux(energy.unshot));
     if (solution_.error)
-        out += fmt::format("Error: {}\n", error_text(*solution_.error));
+        out += fmt::format("Error: {}\n", error_text(solution_));
     else
         out += "Error: not estimated\n";
+
+    if (solution_.refined_for)
+        out += fmt::format("Refined for {}: rough elsewhere, not view-independent\n",
+                           focus_text(*solution_.refined_for));
 
     if (!solution_.cameras.empty()) out += "\n";
     for (const Camera& camera : solution_.cameras) out += fmt::format("Camera {}\n", camera.name);

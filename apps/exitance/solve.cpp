@@ -31,12 +31,13 @@ class SolveCommand {
     explicit SolveCommand(CLI::App& command)
         : given_(command, "Solving", describe(options_)),
           reading_(command, "Reading a scene", describe(read_options_)) {
-        command
-            .add_option(
-                "scene", scene_,
-                "what to light: .toml, .glb, .gltf, .mgf, .rad, .geom, .vs3, .obj, .ply, .stl, "
-                ".fbx, .dae, .3ds or .ifc")
-            ->required();
+        CLI::Option* scene =
+            command
+                .add_option(
+                    "scene", scene_,
+                    "what to light: .toml, .glb, .gltf, .mgf, .rad, .geom, .vs3, .obj, .ply, .stl, "
+                    ".fbx, .dae, .3ds or .ifc")
+                ->required();
         command
             .add_option(
                 "--output,-o", output_,
@@ -46,10 +47,18 @@ class SolveCommand {
                          "solve by every solver and transport in turn and print a table instead: "
                          "work, time, residual, difference from the converged solution, memory");
 #ifdef EXITANCE_VIEWER
-        command
-            .add_flag("--view", view_,
-                      "show the solution in the browser while it grows, as exitance view does")
-            ->excludes("--compare");
+        CLI::Option* view = command.get_option("--view");
+        view->excludes("--compare")
+            ->expected(0, 1)
+            // `solve --view SCENE`: the word after it is the scene where no other word is.
+            ->transform([scene](const std::string& word) {
+                if (word.empty() || scene->count() > 0) return word;
+                scene->add_result(word);
+                return std::string();
+            })
+            ->description(view->get_description() +
+                          "; alone, without a camera: show the solution in the browser while it "
+                          "grows, as exitance view does");
         walking_.add_no_open(command, "--view");
 #endif
         reporting_.add_to(command);
@@ -57,6 +66,7 @@ class SolveCommand {
             "Examples:\n"
             "  exitance solve scenes/cornell.toml -o cornell.glb\n"
             "  exitance solve scenes/cornell.toml -o draft.glb --error 0.1 --time 10\n"
+            "  exitance solve scenes/cornell.toml -o front.glb --view front\n"
             "\n"
             "Ctrl-C stops cleanly and writes what is solved. A project's [solve] table sets the\n"
             "same options by the same names; the command line wins.");
@@ -74,6 +84,8 @@ class SolveCommand {
         const Scene scene = read_scene(scene_, read_options_);
         if (!reporting_.quiet) print_findings(scene);
         given_.apply(scene.settings);
+        const bool live = options_.view && options_.view->empty();
+        if (live) options_.view = setting_of(scene, "view");
 
         const Interrupt interrupt;
         if (compare_) {
@@ -81,7 +93,11 @@ class SolveCommand {
             return;
         }
 #ifdef EXITANCE_VIEWER
-        if (view_) return solve_and_view(scene, interrupt.cancel());
+        if (!walking_.open && !live)
+            throw Error(Fault::wrong_use, "--no-open goes with --view alone, without a camera");
+        if (live) return solve_and_view(scene, interrupt.cancel());
+#else
+        if (live) throw Error(Fault::wrong_use, "--view: expected the name of a camera");
 #endif
         const Stopwatch watch;
         const Solution solution =
@@ -101,6 +117,13 @@ class SolveCommand {
     bool compare_ = false;
     Reporting reporting_;
 
+    static std::optional<std::string> setting_of(const Scene& scene, const std::string& name) {
+        std::optional<std::string> out;
+        for (const Setting& setting : scene.settings)
+            if (setting.name == name) out = setting.value;
+        return out;
+    }
+
     void report(const Solution& solution, const Stopwatch& watch, bool stopped) const {
         if (reporting_.quiet) return;
         // A table on stdout stays one.
@@ -110,7 +133,6 @@ class SolveCommand {
     }
 
 #ifdef EXITANCE_VIEWER
-    bool view_ = false;
     WalkthroughOptions walking_;
 
     void solve_and_view(const Scene& scene, const Cancel& interrupt) {

@@ -42,6 +42,8 @@ double tolerable_imbalance(const Solution& solution) {
 
 std::string balance_warning(const Solution& solution) {
     const double off = solution.energy.imbalance();
+    // Where nobody looks light is left as it is.
+    if (solution.refined_for) return "";
     if (!(std::abs(off) > tolerable_imbalance(solution))) return "";
     return fmt::format(
         "the light that arrived is {} {} than what was emitted: most often a lamp is very close to "
@@ -71,14 +73,24 @@ void print_lit_anew(const std::filesystem::path& scene) {
                scene.string());
 }
 
-std::string error_text(const ErrorEstimate& error) {
+std::string focus_text(const RefinedFor& what) {
+    std::string out;
+    if (what.camera) out = "what camera '" + *what.camera + "' sees";
+    if (what.grid) out += (out.empty() ? "grid '" : " and grid '") + *what.grid + "'";
+    return out;
+}
+
+std::string error_text(const Solution& solution) {
+    const ErrorEstimate& error = *solution.error;
     // Few points with most of the error tell little more than how large it may be.
     const std::string value =
         error.confidence < error.rms
             ? fmt::format("{} ± {}", human_percent(error.rms), human_percent(error.confidence))
             : "below " + human_percent(error.rms + error.confidence);
-    return fmt::format("{} (RMS of irradiance over its mean, {} held-out points)", value,
-                       error.points);
+    const std::string where =
+        solution.refined_for ? " chosen for " + focus_text(*solution.refined_for) : "";
+    return fmt::format("{} (RMS of irradiance over its mean, {} held-out points{})", value,
+                       error.points, where);
 }
 
 std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds) {
@@ -89,7 +101,10 @@ std::string summary(const Solution& solution, const std::filesystem::path& file,
     out += fmt::format("  energy  {}\n", energy_line(solution));
     const std::string warning = balance_warning(solution);
     if (!warning.empty()) out += fmt::format("  warning {}\n", warning);
-    if (solution.error) out += fmt::format("  error   {}\n", error_text(*solution.error));
+    if (solution.refined_for)
+        out += fmt::format("  refined for {}: rough elsewhere, not view-independent\n",
+                           focus_text(*solution.refined_for));
+    if (solution.error) out += fmt::format("  error   {}\n", error_text(solution));
     const auto count = [&](const char* name) {
         const auto found = solution.counters.find(name);
         return human_count(found == solution.counters.end() ? 0 : found->second);

@@ -21,7 +21,10 @@ void print_findings(const Scene& scene);
 void print_lit_anew(const std::filesystem::path& scene);
 
 /// "1.8 % ± 0.2 % (…)", or how large it may be where the points do not tell more.
-std::string error_text(const ErrorEstimate& error);
+std::string error_text(const Solution& solution);
+
+/// "what camera 'door' sees and grid 'desks'"
+std::string focus_text(const RefinedFor& what);
 
 /// The solution in a few lines: size, energy balance, error estimate, work.
 std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds);

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/pipeline.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "exitance/render/camera_rays.h"
 #include "exitance/run/error.h"
 #include "exitance/solution/balance.h"
 #include "exitance/solution/error_estimate.h"
 #include "exitance/solution/extract.h"
+#include "exitance/solution/probe.h"
+#include "exitance/solution/surface_probe.h"
 #include "exitance/solve/divide.h"
 #include "exitance/solve/element_methods.h"
 #include "exitance/solve/element_solve.h"
 #include "exitance/solve/gathering.h"
+#include "exitance/solve/importance.h"
 #include "exitance/solve/merge.h"
 #include "exitance/solve/shooting.h"
 #include "exitance/solve/unshot.h"
@@ -123,6 +129,65 @@ void require_polygons(const Scene& scene) {
         throw Error(Fault::bad_input, "the scene has no polygons, expected something to light");
 }
 
+template <class Thing>
+const Thing& named(const std::vector<Thing>& things, const std::string& name,
+                   const std::string& kind) {
+    std::vector<std::string> names;
+    for (const Thing& thing : things) {
+        if (thing.name == name) return thing;
+        names.push_back(thing.name);
+    }
+    throw Error(Fault::wrong_use,
+                names.empty() ? fmt::format("there is no {} '{}': the scene has none", kind, name)
+                              : fmt::format("there is no {} '{}'{}; there are: {}", kind, name,
+                                            suggestion(name, names), fmt::join(names, ", ")));
+}
+
+// Pages may be wider than the picture that is a camera's own.
+constexpr double widest = 16.0 / 9.0;
+// Of a finer grid so many stand for all.
+constexpr std::uint32_t most_sensors_along = 64;
+
+Focus focus_of(const Scene& scene, const SolveOptions& options) {
+    Focus out;
+    if (options.view) {
+        const Camera& camera = named(scene.cameras, *options.view, "camera");
+        constexpr std::uint32_t height = 192;
+        const auto width = static_cast<std::uint32_t>(
+            std::clamp(height * camera.aspect.value_or(widest), 1.0, 4e3));
+        const CameraRays rays(camera, width, height);
+        for (std::uint32_t y = 0; y < height; ++y)
+            for (std::uint32_t x = 0; x < width; ++x)
+                out.sight.push_back({rays.eye(), rays.direction(x + 0.5, y + 0.5)});
+    }
+    if (options.grid) {
+        SensorGrid grid = named(scene.grids, *options.grid, "grid");
+        grid.columns = std::min(grid.columns, most_sensors_along);
+        grid.rows = std::min(grid.rows, most_sensors_along);
+        for (const auto& [point, normal] : sensor_points(grid))
+            out.sensors.push_back({point, normal});
+    }
+    Box bounds;
+    for (const Vec3& point : scene.points) bounds.add(point);
+    out.reach = SurfaceProbeOptions{}.tolerance * length(bounds.size());
+    return out;
+}
+
+std::optional<ErrorEstimate> estimate_error_of(const Radiosity& radiosity,
+                                               const SolveOptions& options,
+                                               const Importance* importance) {
+    std::vector<PatchId> patches;
+    const Solution solution = extract_solution(radiosity, {}, &patches);
+    if (!importance) return estimate_error(solution, options.seed, options.error);
+    TriangleImportance of_triangles;
+    for (const PatchId patch : patches) {
+        of_triangles.shown.push_back(importance->shown[patch.index()]);
+        of_triangles.weight.push_back(importance->weight[patch.index()]);
+        of_triangles.echo.push_back(importance->echo[patch.index()]);
+    }
+    return estimate_error(solution, options.seed, options.error, &of_triangles);
+}
+
 /// What is demanded of a solver. It does what should lead to that error; held-out points tell
 /// whether it led to the error asked for, and if not, more is demanded while that helps.
 struct Demand {
@@ -130,13 +195,16 @@ struct Demand {
     double found = INFINITY;                  ///< by the held-out points, the last time
     std::optional<double> estimate_now{};     ///< by them, whether or not more is demanded
     std::optional<ErrorEstimate> estimate{};  ///< of the solution as it is, if it was looked at
+    const Importance* importance = nullptr;   ///< if there: where it is demanded
 
     bool rise(const SolveOptions& options, const Radiosity& radiosity) {
         constexpr double least = 0.1, worthwhile = 0.9;
         if (!options.adaptive || options.unshot || options.next_shot) return false;
-        estimate = estimate_error(extract_solution(radiosity), options.seed, options.error);
+        estimate = estimate_error_of(radiosity, options, importance);
         if (estimate) estimate_now = estimate->rms;
-        if (!estimate || estimate->rms <= options.error) return false;
+        // What fills a picture may be small and wrong: few points show it, and leave much doubt.
+        const double doubt = importance && estimate ? estimate->confidence : 0.0;
+        if (!estimate || estimate->rms + doubt <= options.error) return false;
         const bool had_begun = error <= options.error;
         if (had_begun && estimate->rms > worthwhile * found) return false;
         if (error <= least * options.error) return false;
@@ -168,6 +236,7 @@ struct Task {
     const Stopwatch& clock;
     const Observer& observe;
     const Snapshots& snapshots;
+    const Focus& focus;
 };
 
 struct Done {
@@ -183,9 +252,10 @@ std::function<bool()> interruption(const Task& task) {
 // Runs an adaptive solver to the error asked for, beginning with a demand for `first`.
 template <class AdaptiveSolver>
 Demand run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, double first,
-                      const Shooting* shooting) {
+                      const Shooting* shooting, const Importance* importance = nullptr) {
     const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, shooting);
     Demand demand{first};
+    demand.importance = importance;
     const Observer tell = [&](Progress progress) {
         progress.error = demand.estimate_now;
         if (watch) watch(progress);
@@ -222,15 +292,21 @@ Done gather_adaptively(Radiosity& radiosity, const Task& task) {
     gathering.column.seed = options.seed;
     gathering.column.most_rays = 512;
     gathering.interrupted = interruption(task);
+    std::optional<Importance> importance;
+    if (!task.focus.empty()) importance = find_importance(radiosity, task.focus, options.seed);
+    gathering.importance = importance ? &*importance : nullptr;
     Gathering solver(radiosity, gathering);
-    const Demand demand = run_adaptively(solver, radiosity, task, first, nullptr);
+    const Demand demand =
+        run_adaptively(solver, radiosity, task, first, nullptr, gathering.importance);
     solver.finish();
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
     Done out{balance(radiosity, options.seed), counters_of(radiosity)};
     out.counters["rays"] = static_cast<double>(solver.rays());
     out.counters["shots"] = 0;
     out.counters["bytes"] = static_cast<double>(solver.bytes());
-    out.error = demand.estimate;
+    out.error = demand.estimate || !importance
+                    ? demand.estimate
+                    : estimate_error_of(radiosity, options, &*importance);
     return out;
 }
 
@@ -258,6 +334,7 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
                const Cancel* cancel, const Snapshots& snapshots) {
     require_polygons(scene);
     require_possible(options);
+    const Focus focus = focus_of(scene, options);
     const tbb::global_control threads(
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
@@ -268,13 +345,15 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
                         mesh_options(options, size));
     if (const auto longest = element_size(options, size)) divide_evenly(radiosity, *longest);
     const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
-                    clock,   observe, snapshots};
+                    clock,   observe, snapshots,
+                    focus};
     const Done done = solver_of(options) == adaptive_gathering ? gather_adaptively(radiosity, task)
                       : by_elements(options)                   ? solve_by_elements(radiosity, task)
                                                                : shoot_adaptively(radiosity, task);
 
     Solution solution = extract_solution(radiosity);
     solution.energy = done.energy;
+    if (!focus.empty()) solution.refined_for = RefinedFor{options.view, options.grid};
     solution.error =
         done.error ? done.error : estimate_error(solution, options.seed, options.error);
     solution.options = used(options);

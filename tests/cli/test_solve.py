@@ -146,6 +146,32 @@ position = [0, HEIGHT, 0]
                  "--solver", "jakobi")):
             self.refuse(WRONG_USE, message, "solve", self.scene, *output, *arguments)
 
+    def test_refined_for_a_camera_or_a_grid(self):
+        scene = self.write("cornell.toml", (ROOT / "scenes/cornell.toml").read_text())
+        solve = ("solve", "-o", self.output, *QUICK, "--solver", "gathering", scene)
+        said = self.succeed(*solve, "--view", "front").stdout
+        self.assertIn("refined for what camera 'front' sees: rough elsewhere, not view-independent",
+                      said)
+        self.assertRegex(said, r"held-out points chosen for what camera 'front' sees\)")
+        self.assertEqual(extras(self.output)["refined_for"], {"camera": "front"})
+        self.succeed(*solve, "--view", "front", "--grid", "back wall")
+        told = self.succeed("info", self.output).stdout
+        self.assertIn("Refined for what camera 'front' sees and grid 'back wall': rough", told)
+        facts = json.loads(self.succeed("info", "--json", self.output).stdout)
+        self.assertEqual(facts["refined_for"], {"camera": "front", "grid": "back wall"})
+        self.succeed(*solve)
+        self.assertNotIn("refined_for", extras(self.output))
+        self.assertNotIn("Refined", self.succeed("info", self.output).stdout)
+        for message, *arguments in (
+                ("no camera 'frnt', did you mean 'front'", "--view", "frnt"),
+                ("no grid 'wall'.*; there are: floor, back wall", "--grid", "wall"),
+                ("--grid floor cannot .* shooting, .* expected --solver gathering",
+                 "--grid", "floor", "--solver", "shooting"),
+                ("--no-open goes with --view alone", "--view", "front", "--no-open")):
+            wrong = [a for a in solve if "--solver" not in arguments or
+                     a not in ("--solver", "gathering")]
+            self.refuse(WRONG_USE, message, *wrong, *arguments)
+
     def test_json_log(self):
         done = self.solve(*QUICK, "--log", "json")
         steps = [json.loads(line) for line in done.stderr.splitlines()]

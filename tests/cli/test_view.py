@@ -430,6 +430,14 @@ class Live(Viewing):
         self.assertEqual(process.returncode, 0)
         self.assertIn("stopped early", said)
 
+    def test_the_scene_after_view_is_no_camera(self):
+        done = self.run_program("solve", "--view", "box.geom", "-o", "again.glb", "--error", "0.3",
+                                env={"PATH": "/nowhere"})
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no browser could be opened", done.stderr)
+        self.assertEqual((self.folder / "again.glb").read_bytes(),
+                         (self.folder / "box.glb").read_bytes())
+
     def test_a_solve_that_nobody_can_watch_ends(self):
         """No browser, and nobody came."""
         done = self.run_program("solve", "box.geom", "-o", "again.glb", "--error", "0.3", "--view",

@@ -29,6 +29,8 @@ GatherOptions rays_to_tell(double about) {
 struct HeldOut {
     std::vector<GatherPoint> points;
     std::vector<SurfacePlace> places;
+    std::vector<double> shown;    ///< of what the point counts: the share that is no echo
+    std::vector<double> worth;    ///< that an error has where the point is shown
     double mean_reflectance = 0;  ///< area-weighted, luminance
 };
 
@@ -43,8 +45,10 @@ bool is_of_interest(const Material& material) {
     return luminance(material.reflectance) > 0 || !material.emits();
 }
 
-// Points spread evenly over the area of all that is of interest, by systematic sampling.
-HeldOut hold_out(const Solution& solution, std::uint64_t seed) {
+// Points spread evenly over the area of all that is of interest, or in proportion to what it
+// matters, by systematic sampling.
+HeldOut hold_out(const Solution& solution, std::uint64_t seed,
+                 const TriangleImportance* importance) {
     HeldOut out;
     std::vector<double> cumulative;
     std::vector<std::uint32_t> triangles;
@@ -54,7 +58,10 @@ HeldOut hold_out(const Solution& solution, std::uint64_t seed) {
         if (!is_of_interest(solution.materials[part.material])) continue;
         for (std::uint32_t k = 0; k < part.triangles; ++k) {
             const std::uint32_t t = part.first_triangle + k;
-            const double area = triangle_area(solution, t);
+            const double matters =
+                importance ? double(importance->weight[t]) + double(importance->echo[t]) : 1.0;
+            const double area = matters * triangle_area(solution, t);
+            if (!(area > 0)) continue;
             total += area, reflected += area * rho;
             cumulative.push_back(total);
             triangles.push_back(t);
@@ -76,6 +83,11 @@ HeldOut hold_out(const Solution& solution, std::uint64_t seed) {
         }
         out.points.push_back({position, normalized(normal)});
         out.places.push_back({t, {w[0], w[1], w[2]}});
+        const double shown = importance ? double(importance->shown[t]) : 1.0;
+        const double echo = importance ? double(importance->echo[t]) : 0.0;
+        const double weight = importance ? double(importance->weight[t]) : 1.0;
+        out.shown.push_back(weight / (weight + echo));
+        out.worth.push_back(shown > 0 ? shown : 1.0);
     }
     return out;
 }
@@ -97,17 +109,21 @@ void drop_buried(const Surfaces& surfaces, HeldOut& held) {
     for (std::size_t i = 0; i < exposed.size(); ++i) {
         if (!exposed[i]) continue;
         held.points[kept] = held.points[i];
+        held.shown[kept] = held.shown[i];
+        held.worth[kept] = held.worth[i];
         held.places[kept++] = held.places[i];
     }
     held.points.resize(kept);
     held.places.resize(kept);
+    held.shown.resize(kept);
+    held.worth.resize(kept);
 }
 
 }  // namespace
 
 std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint64_t seed,
-                                            double about) {
-    HeldOut held = hold_out(solution, hash_bits(seed, 0xe57u));
+                                            double about, const TriangleImportance* importance) {
+    HeldOut held = hold_out(solution, hash_bits(seed, 0xe57u), importance);
     if (held.points.empty()) return std::nullopt;
     const Surfaces surfaces(solution, Backs::black);
     drop_buried(surfaces, held);
@@ -121,27 +137,36 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
     gather(surfaces, held.points, second, options);
 
     const auto level = [&](const double* row) { return solution.luminance({row, columns}); };
-    double mean = 0, bias = 0;
+    double all_shown = 0;
+    for (const double share : held.shown) all_shown += share;
+    if (all_shown <= 0) return std::nullopt;
+    double mean = 0, bias = 0, brought = 0, looked_at = 0;
     std::vector<double> squares(n);
     for (std::size_t i = 0; i < n; ++i) {
         surfaces.irradiance(held.places[i], told);
-        const double here = level(told.data());
+        const double here = level(told.data()), shown = held.shown[i];
         const double a = here - level(&first[i * columns]), b = here - level(&second[i * columns]);
-        mean += 0.5 * ((here - a) + (here - b)) / static_cast<double>(n);
-        bias += 0.5 * (a + b) / static_cast<double>(n);
-        squares[i] = a * b;
+        mean += shown * 0.5 * ((here - a) + (here - b)) / all_shown;
+        bias += shown * 0.5 * (a + b) / all_shown;
+        brought += (1 - shown) * 0.5 * (a + b) / all_shown;
+        squares[i] = shown * held.worth[i] * a * b;
+        looked_at += shown / held.worth[i];
     }
     if (mean <= 0) return std::nullopt;
     double square = 0, spread = 0;
-    for (const double s : squares) square += s / static_cast<double>(n);
-    for (const double s : squares) spread += (s - square) * (s - square);
-    const double repeated = bias / (1.0 - std::min(held.mean_reflectance, 0.99));
+    for (const double s : squares) square += s / looked_at;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double expected = held.shown[i] / held.worth[i] * square;
+        spread += (squares[i] - expected) * (squares[i] - expected);
+    }
+    const double repeated =
+        importance ? bias + brought : bias / (1.0 - std::min(held.mean_reflectance, 0.99));
     const double total = std::max(0.0, square - bias * bias) + repeated * repeated;
     ErrorEstimate out;
     out.points = static_cast<std::uint32_t>(n);
     out.rms = std::sqrt(total) / mean;
     // d√x = dx / 2√x; `spread` / n² is the variance of the mean square.
-    const double deviation = std::sqrt(spread) / static_cast<double>(n) / (mean * mean);
+    const double deviation = std::sqrt(spread) / looked_at / (mean * mean);
     out.confidence = out.rms > 0 ? deviation / (2 * out.rms) : std::sqrt(deviation);
     return out;
 }

@@ -30,15 +30,17 @@ class Extraction {
         if (!unshot.empty()) append_column(unshot);
     }
 
-    void run() {
+    void run(std::vector<PatchId>* patches) {
         find_leaves();
         fill_buried();
         std::vector<std::vector<std::array<std::uint32_t, 3>>> by_surface(
             radiosity_.scene.surfaces.size());
+        std::vector<std::vector<PatchId>> patches_of(by_surface.size());
         for (const ElementId leaf : leaves_) {
             const Face& face = mesh_.face_of(mesh_[leaf]);
             enter(face);
             triangulate(leaf, by_surface[face.surface]);
+            patches_of[face.surface].resize(by_surface[face.surface].size(), mesh_[leaf].patch);
         }
         for (std::size_t s = 0; s < by_surface.size(); ++s) {
             if (by_surface[s].empty()) continue;
@@ -50,6 +52,8 @@ class Extraction {
             part_of_surface_.resize(s + 1);
             part_of_surface_[s] = static_cast<std::uint32_t>(out_.parts.size() - 1);
             out_.triangles.insert(out_.triangles.end(), by_surface[s].begin(), by_surface[s].end());
+            if (patches)
+                patches->insert(patches->end(), patches_of[s].begin(), patches_of[s].end());
         }
         out_.irradiance = VertexField(out_.positions.size(), radiosity_.columns.count);
         const std::size_t columns = radiosity_.columns.stride;
@@ -298,7 +302,8 @@ class Extraction {
 
 }  // namespace
 
-Solution extract_solution(const Radiosity& radiosity, std::span<const float> unshot) {
+Solution extract_solution(const Radiosity& radiosity, std::span<const float> unshot,
+                          std::vector<PatchId>* patches) {
     const Scene& scene = radiosity.scene;
     Solution out;
     out.title = scene.title;
@@ -315,7 +320,7 @@ Solution extract_solution(const Radiosity& radiosity, std::span<const float> uns
     out.cameras = scene.cameras;
     out.grids = scene.grids;
     out.scene_digest = digest(scene);
-    Extraction(radiosity, unshot, out).run();
+    Extraction(radiosity, unshot, out).run(patches);
     if (!out.texture_coordinates.empty()) out.texture_coordinates.resize(out.positions.size());
     return out;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "exitance/solution/solution.h"
 #include "exitance/solve/radiosity.h"
@@ -12,8 +13,10 @@ namespace exitance {
 /// Triangles, vertices and irradiance of the leaves, with parts, materials, emitters, cameras and
 /// grids. Every place that any leaf puts on an edge is a vertex of all triangles along that edge.
 /// Vertices buried under other objects take the mean of their exposed neighbours. `unshot`, one per
-/// vertex of the mesh or empty, becomes Solution::unshot.
-Solution extract_solution(const Radiosity& radiosity, std::span<const float> unshot = {});
+/// vertex of the mesh or empty, becomes Solution::unshot. `patches`, if there, receives the patch
+/// of each triangle.
+Solution extract_solution(const Radiosity& radiosity, std::span<const float> unshot = {},
+                          std::vector<PatchId>* patches = nullptr);
 
 /// 64 bits over geometry and materials, in hexadecimal.
 std::string digest(const Scene& scene);

@@ -120,6 +120,11 @@ json extras_of(const Solution& s) {
         out["error"] = {{"rms", s.error->rms},
                         {"confidence", s.error->confidence},
                         {"points", s.error->points}};
+    if (s.refined_for) {
+        json& refined = out["refined_for"] = json::object();
+        if (s.refined_for->camera) refined["camera"] = *s.refined_for->camera;
+        if (s.refined_for->grid) refined["grid"] = *s.refined_for->grid;
+    }
     add_luminaires(out, s);
     add_distant_lights(out, s);
     if (!s.light_scenes.empty()) {
@@ -236,6 +241,14 @@ void read_extras(const Node& extras, Solution& s) {
         s.error =
             ErrorEstimate{error["rms"].number(), error["confidence"].number(),
                           static_cast<std::uint32_t>(error["points"].index_below(1ull << 32))};
+    }
+    if (extras.has("refined_for")) {
+        const Node refined = extras["refined_for"];
+        s.refined_for.emplace();
+        if (refined.has("camera")) s.refined_for->camera = refined["camera"].text();
+        if (refined.has("grid")) s.refined_for->grid = refined["grid"].text();
+        if (!s.refined_for->camera && !s.refined_for->grid)
+            refined.refuse("the name of a camera or a grid");
     }
     const Node options = extras["options"], counters = extras["counters"];
     for (const std::string& key : options.keys()) s.options[key] = options[key].text();

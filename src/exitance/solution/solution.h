@@ -40,6 +40,11 @@ struct ErrorEstimate {
     std::uint32_t points = 0;
 };
 
+/// By name, what a solution was refined for: elsewhere it is rough.
+struct RefinedFor {
+    std::optional<std::string> camera, grid;
+};
+
 /// Triangles [first_triangle, first_triangle + triangles) with one material.
 struct SolutionPart {
     std::string name;  ///< surface name
@@ -96,6 +101,7 @@ struct Solution {
     std::vector<SensorGrid> grids;
 
     EnergyBalance energy;
+    std::optional<RefinedFor> refined_for;  ///< nothing: all places alike, view-independent
     std::optional<ErrorEstimate> error;
     std::map<std::string, std::string> options;  ///< as used, for reproduction
     std::map<std::string, double> counters;      ///< shots, rays, vertices …

@@ -16,6 +16,10 @@ namespace {
 // Of the tolerance: what merging may change.
 constexpr float merge_share = 0.25f;
 
+// What is looked at is taken to be no darker than this share of the scene's mean; held-out points
+// ask for more where it is.
+constexpr double least_brightness = 0.1;
+
 // Finding the obstacles of a scene takes some microseconds per polygon; where there are more, most
 // are parts of round bodies that stand in each other's way, and rays are needed all the same.
 constexpr std::size_t most_polygons_as_obstacles = 20000;
@@ -41,6 +45,7 @@ Gathering::Gathering(Radiosity& radiosity, const GatheringOptions& options)
       obstacles_(obstacles_of(radiosity)),
       direct_(0, radiosity.columns.count),
       mean_irradiance_(radiosity.area() > 0 ? radiosity.emitted_flux() / radiosity.area() : 0.0) {
+    if (options.importance) of_direct_light_ = options.importance->of_direct_light();
     if (obstacles_) options_.column.obstacles = &*obstacles_;
 }
 
@@ -138,6 +143,7 @@ void Gathering::light_directly() {
         refining.thorough = first;
         refining.shared_noise = true;
         refining.gross = 16;
+        refining.importance = of_direct_light_;
         refining.interrupted = options_.interrupted;
         rays_ += refine(radiosity_, refining, [&](const Receivers& points, Received& lit) {
             return cast_direct(points, lit);
@@ -173,12 +179,16 @@ void Gathering::complete_direct() {
     }
 }
 
-// Mean irradiance, and what share of the area light is spread over.
+// Mean irradiance where somebody looks, and what share of the area light is spread over. Before
+// the balance it may be dark there.
 void Gathering::weigh() {
     const Mesh& mesh = radiosity_.mesh;
     std::vector<float> row(radiosity_.columns.stride);
-    double received = 0, square = 0, area = 0;
+    double received = 0, square = 0, area = 0, received_anywhere = 0, area_anywhere = 0;
     for (const Patch& patch : mesh.patches()) {
+        const double shown =
+            options_.importance ? double(options_.importance->shown[mesh[patch.root].patch.index()])
+                                : 1.0;
         double flux = 0, open_area = 0;
         mesh.for_leaves(patch.root, [&](ElementId id) {
             const double open = double(radiosity_.open_share(mesh[id]) * mesh[id].area);
@@ -186,11 +196,14 @@ void Gathering::weigh() {
             flux += open * double(radiosity_.columns.luminance(row));
             open_area += open;
         });
-        received += flux, area += open_area;
-        if (open_area > 0) square += flux * flux / open_area;
+        received_anywhere += flux, area_anywhere += open_area;
+        received += shown * flux, area += shown * open_area;
+        if (open_area > 0) square += shown * flux * flux / open_area;
     }
     if (square > 0) lit_share_ = received * received / (square * area);
-    if (area > 0) mean_irradiance_ = received / area;
+    if (area > 0)
+        mean_irradiance_ =
+            std::max(received / area, least_brightness * received_anywhere / area_anywhere);
 }
 
 void Gathering::strike_balance() {
@@ -202,6 +215,7 @@ void Gathering::strike_balance() {
     IndirectOptions gathering;
     gathering.area = patch_area();
     gathering.adaptive = options_.adaptive;
+    if (options_.importance) gathering.shown = options_.importance->shown;
     gathering.interrupted = options_.interrupted;
     indirect_.emplace(radiosity_, *reflected_, gathering);
     combine();

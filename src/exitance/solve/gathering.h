@@ -12,6 +12,7 @@
 #include "exitance/formfactor/obstacles.h"
 #include "exitance/mesh/field.h"
 #include "exitance/solve/cast_light.h"
+#include "exitance/solve/importance.h"
 #include "exitance/solve/indirect.h"
 #include "exitance/solve/radiosity.h"
 #include "exitance/solve/reflected_light.h"
@@ -26,6 +27,8 @@ struct GatheringOptions {
     bool adaptive = true;
     bool merge = true;  ///< elements that the light does not need
     ColumnOptions column{};
+    /// If there: the error is aimed at where somebody looks. Outlives the solver.
+    const Importance* importance = nullptr;
     std::function<bool()> interrupted{};  ///< asked during long steps: true ends them
 };
 
@@ -75,6 +78,7 @@ class Gathering final : public Solver {
     std::optional<IndirectLight> indirect_;
     VertexField direct_;  ///< D, of the first vertices, as far as it is known
     std::vector<float> direct_variance_;
+    std::vector<float> of_direct_light_;  ///< importance per patch, or empty
     double mean_irradiance_ = 0, lit_share_ = 1;
     std::uint64_t rays_ = 0;
     int level_ = 0;

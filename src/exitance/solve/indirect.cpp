@@ -48,13 +48,19 @@ IndirectLight::IndirectLight(Radiosity& radiosity, ReflectedLight& source,
       options_(options) {
     admit_new_vertices();
     for (const Patch& patch : radiosity.mesh.patches()) {
-        if (!radiosity.black_lamp()[radiosity.mesh[patch.face].polygon.index()])
+        if (!radiosity.black_lamp()[radiosity.mesh[patch.face].polygon.index()] &&
+            shown(radiosity.mesh[patch.root].patch) > 0)
             open_.push_back(patch.root);
         else  // nobody asks for the light that they receive
             radiosity.mesh.for_leaves(patch.root, [&](ElementId id) {
                 for (const VertexId v : radiosity.mesh[id].corners()) known_[v.index()] = 1;
             });
     }
+    if (options_.shown.empty()) return;
+    for (const ElementId root : open_)  // but what they share with others is asked for
+        radiosity.mesh.for_leaves(root, [&](ElementId id) {
+            for (const VertexId v : radiosity.mesh[id].corners()) known_[v.index()] = 0;
+        });
 }
 
 // The first complete solution: each vertex has what its patches get, on average.
@@ -100,12 +106,20 @@ float IndirectLight::light(VertexId v) const {
     return radiosity_.columns.luminance(irradiance[v]);
 }
 
+float IndirectLight::shown(PatchId patch) const {
+    return options_.shown.empty() ? 1.0f : options_.shown[patch.index()];
+}
+
+float IndirectLight::base_tolerance(const Element& element) const {
+    return options_.tolerance / shown(element.patch);
+}
+
 float IndirectLight::tolerance(const Element& element) const {
-    return tolerance_of(options_.tolerance, options_.area, element.area);
+    return tolerance_of(base_tolerance(element), options_.area, element.area);
 }
 
 std::uint32_t IndirectLight::rays_for(const Element& element) const {
-    const float allowed = std::min(tolerance(element), most_noisy * options_.tolerance);
+    const float allowed = std::min(tolerance(element), most_noisy * base_tolerance(element));
     return source_.rays_for(element.patch, noise_share * allowed);
 }
 
@@ -130,7 +144,7 @@ void IndirectLight::sort_out(std::vector<ElementId>& tested, std::vector<Element
             // An object stands on the element: only small elements may be half covered.
             float high = 0;
             for (const VertexId v : element.corners()) high = std::max(high, light(v));
-            if (high > options_.tolerance)
+            if (high > base_tolerance(element))
                 rough.push_back(id);
             else
                 closed_.push_back({id});
@@ -292,7 +306,8 @@ bool IndirectLight::fails(const Expected& expected, const Test& test, float foun
     const float noise =
         noise_deviations * noise_deviations * (test.deviation * test.deviation + expected.variance);
     const float departure = found - expected.light;
-    const float allowed = threshold * (touched(element) ? options_.tolerance : tolerance(element));
+    const float allowed =
+        threshold * (touched(element) ? base_tolerance(element) : tolerance(element));
     return departure * departure > allowed * allowed + noise;
 }
 
@@ -357,7 +372,8 @@ void IndirectLight::finish() {
     // What dividing neighbours brought to elements without light at all corners.
     std::vector<ElementId> rest;
     for (const Patch& patch : radiosity_.mesh.patches())
-        radiosity_.mesh.for_leaves(patch.root, [&](ElementId id) { rest.push_back(id); });
+        if (shown(radiosity_.mesh[patch.root].patch) > 0)
+            radiosity_.mesh.for_leaves(patch.root, [&](ElementId id) { rest.push_back(id); });
     gather_corners(rest);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "exitance/mesh/field.h"
@@ -18,6 +19,9 @@ struct IndirectOptions {
     float area = 1;        ///< [m²]; smaller elements may be wrong by more
     float min_area = 0;    ///< elements below this area stay [m²]
     bool adaptive = true;  ///< elements may be divided
+    /// Per patch: what the tolerance is divided by, 0 = the patch keeps its light on average;
+    /// empty: all alike.
+    std::span<const float> shown{};
     std::function<bool()> interrupted{};
 };
 
@@ -82,6 +86,8 @@ class IndirectLight {
     void interpolate(const Element& whole, const std::array<std::int32_t, 2>& place, VertexId to);
     void interpolate_in(ElementId id, std::span<const float> bend);
     float light(VertexId v) const;
+    float shown(PatchId patch) const;
+    float base_tolerance(const Element& element) const;
     float tolerance(const Element& element) const;
     std::uint32_t rays_for(const Element& element) const;
     bool may_be_divided(const Element& element) const;

@@ -26,6 +26,11 @@ Options describe(SolveOptions& o) {
          "RMS error of irradiance relative to its mean to aim at; mesh, samples and stopping "
          "follow",
          "", 1e-4, 1},
+        {"view", &o.view,
+         "refine for what this camera of the scene sees; elsewhere the solution stays rough and is "
+         "not view-independent"},
+        {"grid", &o.grid,
+         "the same for the sensors of this grid of the scene, alone or besides --view"},
         {"time", &o.time, "stop after this long and keep the best solution so far", "s", 0},
         {"solver", &o.solver,
          "how the system is solved: gathering = a rough balance on stored ray hits and one "
@@ -132,6 +137,14 @@ bool of_elements(const std::string& option) {
 
 namespace {
 
+// Others do not know what matters to whom.
+void require_focus_possible(const SolveOptions& o) {
+    if ((!o.view && !o.grid) || solver_of(o) == adaptive_gathering) return;
+    refuse(std::string(o.view ? "--view " + *o.view : "--grid " + *o.grid) +
+           " cannot be had with --solver " + solver_of(o) +
+           ", which refines for all places alike; expected --solver gathering");
+}
+
 // Of the solvers that divide elements as light needs it.
 void require_adaptive(const SolveOptions& o) {
     const std::string with = " cannot be had with --solver " + solver_of(o);
@@ -160,6 +173,7 @@ void require_adaptive(const SolveOptions& o) {
 }  // namespace
 
 void require_possible(const SolveOptions& o) {
+    require_focus_possible(o);
     if (!by_elements(o)) return require_adaptive(o);
     const std::string with = " cannot be had with --solver " + solver_of(o);
     const bool links = o.transport == "links";

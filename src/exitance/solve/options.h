@@ -12,6 +12,8 @@ namespace exitance {
 
 struct SolveOptions {
     double error = 0.02;
+    std::optional<std::string> view;
+    std::optional<std::string> grid;
     std::optional<double> time;
     std::optional<std::string> solver;  ///< by default as solver_of() says
     std::optional<std::string> transport;

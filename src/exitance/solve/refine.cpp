@@ -81,11 +81,16 @@ class Refinement {
     float light(VertexId v) const { return radiosity_.columns.luminance(radiosity_.irradiance[v]); }
 
     float tolerance(const Element& element) const {
-        return tolerance_of(options_.tolerance, options_.area, element.area);
+        return tolerance_of(options_.tolerance / importance(element), options_.area, element.area);
+    }
+
+    float importance(const Element& element) const {
+        return options_.importance.empty() ? 1.0f : options_.importance[element.patch.index()];
     }
 
     float gross_departure(const Element& element) const {
-        return options_.gross * options_.tolerance * std::sqrt(options_.area / element.area);
+        return options_.gross * options_.tolerance / importance(element) *
+               std::sqrt(options_.area / element.area);
     }
 
     Corners corners_of(const Element& element) const {
@@ -117,7 +122,7 @@ class Refinement {
 
     bool worth_testing(ElementId id) const {
         const Element& element = radiosity_.mesh[id];
-        if (element.level >= Mesh::max_level) return false;
+        if (element.level >= Mesh::max_level || !(importance(element) > 0)) return false;
         if (radiosity_.black_lamp()[radiosity_.mesh.face_of(element).polygon.value]) return false;
         const Corners c = corners_of(element);
         if (is_small(element))

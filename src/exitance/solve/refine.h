@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "exitance/solve/cast_light.h"
@@ -26,6 +27,8 @@ struct RefineOptions {
     /// Small elements are divided all the same where they are wrong by so many times what would be
     /// their share in the square error of the whole; a few such do not count.
     float gross = INFINITY;
+    /// Per patch: what the tolerance is divided by, 0 = the patch stays as it is; empty: all alike.
+    std::span<const float> importance{};
     std::function<bool()> interrupted{};  ///< true: the mesh stays as it is so far
 };
 

@@ -74,10 +74,14 @@ bool ElementCaster::cast_place(std::size_t row, std::uint32_t place, Ends& ends)
 
 void ElementCaster::cast_packet(const Vec3& point, const Vec3& normal, std::uint64_t key,
                                 std::uint32_t packet, Ends& ends) const {
-    ends.count = 0, ends.black = 0;
     RayPacket rays;
     aim_hemisphere(rays, Vec3f(point + normal * caster_.clearance() - caster_.middle()),
                    Vec3f(normal), key, packet);
+    cast(rays, ends);
+}
+
+void ElementCaster::cast(const RayPacket& rays, Ends& ends) const {
+    ends.count = 0, ends.black = 0;
     std::array<float, RayPacket::width> through;
     through.fill(1.0f);
     RayCaster::PacketHits hits;
@@ -88,7 +92,7 @@ void ElementCaster::cast_packet(const Vec3& point, const Vec3& normal, std::uint
     });
     for (std::uint32_t k = 0; k < RayPacket::width; ++k) {
         const std::uint32_t row = hits.primitive[k];
-        if (row == 0xffffffffu) continue;
+        if (row == 0xffffffffu || !(rays.active >> k & 1u)) continue;
         if (hits.front >> k & 1u)
             ends.add(hits, k, through[k]);
         else if (!two_sided_[row])

@@ -69,6 +69,10 @@ class ElementCaster {
     void cast_packet(const Vec3& point, const Vec3& normal, std::uint64_t key, std::uint32_t packet,
                      Ends& ends) const;
 
+    /// The same of any rays, from origins relative to middle().
+    void cast(const RayPacket& rays, Ends& ends) const;
+    Vec3 middle() const { return caster_.middle(); }
+
     /// The same from one point with unit normal: `visit(row, rays)`. All rays() are cast.
     template <class Visit>
     void cast_point(const Vec3& point, const Vec3& normal, std::uint64_t key,
