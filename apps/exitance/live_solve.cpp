@@ -46,6 +46,7 @@ Lit solve_live(const Scene& scene, const SolveOptions& options, ViewServer& serv
     });
     const auto look_around = [&] {
         if (interrupt.requested() || (!keep && server.deserted())) cancel.request();
+        if (paused && server.deserted()) paused = false;  // nobody is left who could resume
     };
     Pace pace;
     Stopwatch since_told;

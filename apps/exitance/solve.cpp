@@ -31,7 +31,7 @@ class SolveCommand {
     explicit SolveCommand(CLI::App& command)
         : given_(command, "Solving", describe(options_)),
           reading_(command, "Reading a scene", describe(read_options_)) {
-        CLI::Option* scene =
+        [[maybe_unused]] CLI::Option* scene =
             command
                 .add_option(
                     "scene", scene_,

@@ -195,6 +195,7 @@ struct Demand {
     double found = INFINITY;                  ///< by the held-out points, the last time
     std::optional<double> estimate_now{};     ///< by them, whether or not more is demanded
     std::optional<ErrorEstimate> estimate{};  ///< of the solution as it is, if it was looked at
+    ErrorEstimate last{};                     ///< the last time that more was demanded
     const Importance* importance = nullptr;   ///< if there: where it is demanded
 
     bool rise(const SolveOptions& options, const Radiosity& radiosity) {
@@ -209,6 +210,7 @@ struct Demand {
         if (had_begun && estimate->rms > worthwhile * found) return false;
         if (error <= least * options.error) return false;
         found = estimate->rms;
+        last = *estimate;
         estimate.reset();
         error *= std::clamp(0.8 * options.error / found, 0.4, 0.8);
         return true;
@@ -243,27 +245,54 @@ struct Done {
     EnergyBalance energy;
     Counters counters;
     std::optional<ErrorEstimate> error{};  ///< if it is known already
+    std::optional<Solution> better{};      ///< than what there is now
+};
+
+/// A solution that did not meet the error asked for, and what is to be told of it, for if the next
+/// is interrupted.
+struct Kept {
+    Solution solution;
+    EnergyBalance energy;
+    Counters counters;
+    ErrorEstimate error;
 };
 
 std::function<bool()> interruption(const Task& task) {
     return [&task] { return task.stop.interruption(task.clock).has_value(); };
 }
 
-// Runs an adaptive solver to the error asked for, beginning with a demand for `first`.
+struct Ran {
+    Demand demand;
+    std::optional<Kept> kept{};  ///< what there was when more was demanded the last time
+};
+
+// Runs an adaptive solver to the error asked for, beginning with a demand for `first`. Each demand
+// after the first takes most of the time that is left.
 template <class AdaptiveSolver>
-Demand run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, double first,
-                      const Shooting* shooting, const Importance* importance = nullptr) {
+Ran run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, double first,
+                   const Shooting* shooting, const Importance* importance = nullptr) {
+    constexpr double share_of_rest = 0.7;
     const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, shooting);
-    Demand demand{first};
+    Ran out{Demand{first}};
+    Demand& demand = out.demand;
     demand.importance = importance;
+    double left = 1;
     const Observer tell = [&](Progress progress) {
         progress.error = demand.estimate_now;
+        if (!shooting)
+            progress.fraction_left =
+                left * (1 - share_of_rest + share_of_rest * progress.fraction_left);
         if (watch) watch(progress);
     };
-    while (run(solver, task.stop, task.clock, tell) == Ended::converged &&
-           demand.rise(task.options, radiosity))
+    while (run(solver, task.stop, task.clock, tell) == Ended::converged) {
+        if (!demand.rise(task.options, radiosity)) break;
+        if (!shooting)
+            out.kept = Kept{extract_solution(radiosity), balance(radiosity, task.options.seed),
+                            counters_of(radiosity), demand.last};
+        left *= 1 - share_of_rest;
         solver.demand(demand.error, min_area(task.options, demand.error, task.size));
-    return demand;
+    }
+    return out;
 }
 
 Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
@@ -296,17 +325,23 @@ Done gather_adaptively(Radiosity& radiosity, const Task& task) {
     if (!task.focus.empty()) importance = find_importance(radiosity, task.focus, options.seed);
     gathering.importance = importance ? &*importance : nullptr;
     Gathering solver(radiosity, gathering);
-    const Demand demand =
-        run_adaptively(solver, radiosity, task, first, nullptr, gathering.importance);
+    Ran ran = run_adaptively(solver, radiosity, task, first, nullptr, gathering.importance);
     solver.finish();
-    if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
-    Done out{balance(radiosity, options.seed), counters_of(radiosity)};
+    std::optional<ErrorEstimate> error = ran.demand.estimate;
+    if (!error && (ran.kept || importance))
+        error = estimate_error_of(radiosity, options, gathering.importance);
+    // An interrupted step towards something better may leave something worse.
+    const bool worse = ran.kept && error && error->rms > ran.kept->error.rms;
+    Done out;
+    if (worse)
+        out = {ran.kept->energy, ran.kept->counters, ran.kept->error,
+               std::move(ran.kept->solution)};
+    else
+        out = {balance(radiosity, options.seed), counters_of(radiosity), error};
+    if (task.snapshots.take && !worse) take_snapshot(task.snapshots, radiosity, nullptr);
     out.counters["rays"] = static_cast<double>(solver.rays());
     out.counters["shots"] = 0;
     out.counters["bytes"] = static_cast<double>(solver.bytes());
-    out.error = demand.estimate || !importance
-                    ? demand.estimate
-                    : estimate_error_of(radiosity, options, &*importance);
     return out;
 }
 
@@ -347,11 +382,11 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
                     clock,   observe, snapshots,
                     focus};
-    const Done done = solver_of(options) == adaptive_gathering ? gather_adaptively(radiosity, task)
-                      : by_elements(options)                   ? solve_by_elements(radiosity, task)
-                                                               : shoot_adaptively(radiosity, task);
+    Done done = solver_of(options) == adaptive_gathering ? gather_adaptively(radiosity, task)
+                : by_elements(options)                   ? solve_by_elements(radiosity, task)
+                                                         : shoot_adaptively(radiosity, task);
 
-    Solution solution = extract_solution(radiosity);
+    Solution solution = done.better ? std::move(*done.better) : extract_solution(radiosity);
     solution.energy = done.energy;
     if (!focus.empty()) solution.refined_for = RefinedFor{options.view, options.grid};
     solution.error =

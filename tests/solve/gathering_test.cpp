@@ -173,6 +173,35 @@ TEST(Gathering, CancelledBeforeItBegins) {
     EXPECT_TRUE(all_finite(light(two_lamp_room(), gathering(), {}, &cancel)));
 }
 
+TEST(Gathering, InterruptedOnTheWayToLessErrorItKeepsTheBest) {
+    SolveOptions options = gathering(0.01);
+    options.min_area = 0.5;  // takes more than one demand
+    Cancel cancel;
+    std::optional<double> known;
+    int after = 0;
+    const Solution solution = light(
+        two_lamp_room(), options,
+        [&](const Progress& progress) {
+            if (!progress.error) return;
+            known = progress.error;
+            if (++after == 2) cancel.request();  // new direct light, and the balance of it
+        },
+        &cancel);
+    ASSERT_TRUE(known) << "the first demand was enough";
+    ASSERT_TRUE(solution.error);
+    EXPECT_LE(solution.error->rms, *known);
+    EXPECT_LT(std::abs(solution.energy.imbalance()), 0.01);
+}
+
+TEST(Gathering, ProgressFalls) {
+    double left = 1;
+    light(two_lamp_room(), gathering(0.004), [&](const Progress& progress) {
+        EXPECT_LE(progress.fraction_left, left);
+        left = progress.fraction_left;
+    });
+    EXPECT_LT(left, 0.5);
+}
+
 TEST(Gathering, TimeStopsIt) {
     SolveOptions options = gathering(0.001);  // far more work than the time allows
     options.time = 2;

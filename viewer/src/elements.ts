@@ -67,7 +67,7 @@ export interface Limits { least?: number; most?: number; above?: number; below?:
 export function numberField(name: string, id: string, holds: () => number, does: (value: number) => void,
   limits: () => Limits = () => ({})): HTMLInputElement {
   const out = element('input', { type: 'number', id, 'aria-label': name, step: 'any' })
-  const show = () => (out.value = String(Number(holds().toPrecision(4))))
+  const show = () => (out.value = String(Number(holds().toPrecision(limits().whole ? 15 : 4))))
   show()
   out.addEventListener('change', () => {
     const { least = -Infinity, most = Infinity, above = -Infinity, below = Infinity, whole } = limits()

@@ -125,7 +125,7 @@ function start(): void {
     await viewer.show(solution)
     document.title = solution.title ? `${solution.title} – Exitance` : 'Exitance'
     byId('title').textContent = byId('title').title = solution.title
-    if (!server?.solving && solution.energy.emitted <= 0) notify('Nothing emits light here: it stays dark.')
+    if (!server && solution.energy.emitted <= 0) notify('Nothing emits light here: it stays dark.')
     if (signature(solution) !== shape) fillPanel(viewer, grids, tape)
     shape = signature(solution)
     if (!first) return

@@ -52,7 +52,7 @@ export function orbited(pose: Pose, azimuth: number, elevation: number): Pose {
 
 /** Nearer to the reference point, or farther: factor < 1 or > 1. */
 export function zoomed(pose: Pose, factor: number): Pose {
-  const centre = reference(pose), distance = Math.max(pose.distance * factor, 1e-4)
+  const centre = reference(pose), distance = Math.min(Math.max(pose.distance * factor, 0.01), 1e5)
   return { ...pose, distance, eye: centre.addScaledVector(lineOfSight(pose), -distance) }
 }
 
