@@ -20,7 +20,7 @@ function views(path) {
 
 describe('live', () => {
   it('a scene grows before one\'s eyes and ends as the file on disk', async () => {
-    const server = await serve(join(root, 'scenes/cornell.toml'), '--error', '0.007', '-o', 'grown.glb')
+    const server = await serve(join(root, 'scenes/cornell.toml'), '--solver', 'shooting', '--error', '0.007', '-o', 'grown.glb')
     try {
       const { page, faults } = await open(browser, server.url)
       await page.evaluate(() => {

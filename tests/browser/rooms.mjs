@@ -14,7 +14,7 @@ export const glb = (name) => join(folder, name)
 export let browser
 
 const solvers = {
-  'cornell.glb': () => run('solve', join(root, 'scenes/cornell.toml'), '-o', 'cornell.glb', '--error', '0.1', '--quiet'),
+  'cornell.glb': () => run('solve', join(root, 'scenes/cornell.toml'), '-o', 'cornell.glb', '--solver', 'shooting', '--error', '0.1', '--quiet'),
   'office.glb': () => run('solve', join(root, 'scenes/office.toml'), '-o', 'office.glb', '--error', '0.3', '--quiet'),
   'room.glb': () => {
     writeTwoLamps()
