@@ -173,50 +173,6 @@ Focus focus_of(const Scene& scene, const SolveOptions& options) {
     return out;
 }
 
-std::optional<ErrorEstimate> estimate_error_of(const Radiosity& radiosity,
-                                               const SolveOptions& options,
-                                               const Importance* importance) {
-    std::vector<PatchId> patches;
-    const Solution solution = extract_solution(radiosity, {}, &patches);
-    if (!importance) return estimate_error(solution, options.seed, options.error);
-    TriangleImportance of_triangles;
-    for (const PatchId patch : patches) {
-        of_triangles.shown.push_back(importance->shown[patch.index()]);
-        of_triangles.weight.push_back(importance->weight[patch.index()]);
-        of_triangles.echo.push_back(importance->echo[patch.index()]);
-    }
-    return estimate_error(solution, options.seed, options.error, &of_triangles);
-}
-
-/// What is demanded of a solver. It does what should lead to that error; held-out points tell
-/// whether it led to the error asked for, and if not, more is demanded while that helps.
-struct Demand {
-    double error;
-    double found = INFINITY;                  ///< by the held-out points, the last time
-    std::optional<double> estimate_now{};     ///< by them, whether or not more is demanded
-    std::optional<ErrorEstimate> estimate{};  ///< of the solution as it is, if it was looked at
-    ErrorEstimate last{};                     ///< the last time that more was demanded
-    const Importance* importance = nullptr;   ///< if there: where it is demanded
-
-    bool rise(const SolveOptions& options, const Radiosity& radiosity) {
-        constexpr double least = 0.1, worthwhile = 0.9;
-        if (!options.adaptive || options.unshot || options.next_shot) return false;
-        estimate = estimate_error_of(radiosity, options, importance);
-        if (estimate) estimate_now = estimate->rms;
-        // What fills a picture may be small and wrong: few points show it, and leave much doubt.
-        const double doubt = importance && estimate ? estimate->confidence : 0.0;
-        if (!estimate || estimate->rms + doubt <= options.error) return false;
-        const bool had_begun = error <= options.error;
-        if (had_begun && estimate->rms > worthwhile * found) return false;
-        if (error <= least * options.error) return false;
-        found = estimate->rms;
-        last = *estimate;
-        estimate.reset();
-        error *= std::clamp(0.8 * options.error / found, 0.4, 0.8);
-        return true;
-    }
-};
-
 using Counters = std::map<std::string, double>;
 
 Counters counters_of(const Radiosity& radiosity) {
@@ -225,6 +181,57 @@ Counters counters_of(const Radiosity& radiosity) {
             {"elements", static_cast<double>(radiosity.mesh.elements().size())},
             {"bytes", static_cast<double>(radiosity.bytes())}};
 }
+
+Solution solution_of(const Radiosity& radiosity) {
+    Solution out = extract_solution(radiosity);
+    out.counters = counters_of(radiosity);
+    return out;
+}
+
+// The same, with what held-out points say of it.
+Solution judged_solution_of(const Radiosity& radiosity, const SolveOptions& options,
+                            const Importance* importance) {
+    std::vector<PatchId> patches;
+    Solution out = extract_solution(radiosity, {}, &patches);
+    out.counters = counters_of(radiosity);
+    TriangleImportance of_triangles;
+    for (const PatchId patch : patches) {
+        if (!importance) break;
+        of_triangles.shown.push_back(importance->shown[patch.index()]);
+        of_triangles.weight.push_back(importance->weight[patch.index()]);
+        of_triangles.echo.push_back(importance->echo[patch.index()]);
+    }
+    out.error =
+        estimate_error(out, options.seed, options.error, importance ? &of_triangles : nullptr);
+    return out;
+}
+
+/// What is demanded of a solver. It does what should lead to that error; held-out points tell
+/// whether it led to the error asked for, and if not, more is demanded while that helps.
+struct Demand {
+    double error;
+    const Importance* importance = nullptr;  ///< if there: where it is demanded
+    double found = INFINITY;                 ///< by the held-out points, the last time
+    std::optional<Solution> solution{};      ///< that they looked at the last time, with its error
+    bool risen = false;                      ///< more was demanded after that
+
+    bool rise(const SolveOptions& options, const Radiosity& radiosity) {
+        constexpr double least = 0.1, worthwhile = 0.9;
+        risen = false;
+        if (!options.adaptive || options.unshot || options.next_shot) return false;
+        solution = judged_solution_of(radiosity, options, importance);
+        const auto& estimate = solution->error;
+        // What fills a picture may be small and wrong: few points show it, and leave much doubt.
+        const double doubt = importance && estimate ? estimate->confidence : 0.0;
+        if (!estimate || estimate->rms + doubt <= options.error) return false;
+        const bool had_begun = error <= options.error;
+        if (had_begun && estimate->rms > worthwhile * found) return false;
+        if (error <= least * options.error) return false;
+        found = estimate->rms;
+        error *= std::clamp(0.8 * options.error / found, 0.4, 0.8);
+        return risen = true;
+    }
+};
 
 // Gathering usually does better than what is demanded of it, and goes on from a rough solution at
 // little cost.
@@ -241,44 +248,20 @@ struct Task {
     const Focus& focus;
 };
 
-struct Done {
-    EnergyBalance energy;
-    Counters counters;
-    std::optional<ErrorEstimate> error{};  ///< if it is known already
-    std::optional<Solution> better{};      ///< than what there is now
-};
-
-/// A solution that did not meet the error asked for, and what is to be told of it, for if the next
-/// is interrupted.
-struct Kept {
-    Solution solution;
-    EnergyBalance energy;
-    Counters counters;
-    ErrorEstimate error;
-};
-
 std::function<bool()> interruption(const Task& task) {
     return [&task] { return task.stop.interruption(task.clock).has_value(); };
 }
 
-struct Ran {
-    Demand demand;
-    std::optional<Kept> kept{};  ///< what there was when more was demanded the last time
-};
-
-// Runs an adaptive solver to the error asked for, beginning with a demand for `first`. Each demand
-// after the first takes most of the time that is left.
+// Runs an adaptive solver to the error asked for, beginning with `demand`. Each demand after the
+// first takes most of the time that is left.
 template <class AdaptiveSolver>
-Ran run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, double first,
-                   const Shooting* shooting, const Importance* importance = nullptr) {
+void run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, Demand& demand,
+                    const Shooting* shooting) {
     constexpr double share_of_rest = 0.7;
     const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, shooting);
-    Ran out{Demand{first}};
-    Demand& demand = out.demand;
-    demand.importance = importance;
     double left = 1;
     const Observer tell = [&](Progress progress) {
-        progress.error = demand.estimate_now;
+        if (demand.solution && demand.solution->error) progress.error = demand.solution->error->rms;
         if (!shooting)
             progress.fraction_left =
                 left * (1 - share_of_rest + share_of_rest * progress.fraction_left);
@@ -286,36 +269,51 @@ Ran run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& tas
     };
     while (run(solver, task.stop, task.clock, tell) == Ended::converged) {
         if (!demand.rise(task.options, radiosity)) break;
-        if (!shooting)
-            out.kept = Kept{extract_solution(radiosity), balance(radiosity, task.options.seed),
-                            counters_of(radiosity), demand.last};
+        if (!shooting) demand.solution->energy = balance(radiosity, task.options.seed);
         left *= 1 - share_of_rest;
         solver.demand(demand.error, min_area(task.options, demand.error, task.size));
     }
-    return out;
 }
 
-Done shoot_adaptively(Radiosity& radiosity, const Task& task) {
+Solution shoot_adaptively(Radiosity& radiosity, const Task& task) {
     const SolveOptions& options = task.options;
     ShootingOptions shooting = shooting_options(options, task.size);
     shooting.interrupted = interruption(task);
     Shooting solver(radiosity, shooting);
-    run_adaptively(solver, radiosity, task, options.error, &solver);
+    Demand demand{options.error};
+    run_adaptively(solver, radiosity, task, demand, &solver);
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, &solver);
-    Done out{balance(radiosity, options.seed), {}};
+    const EnergyBalance energy = balance(radiosity, options.seed);
     if (options.merge) merge_smooth(radiosity, solver.negligible());
-    out.counters = counters_of(radiosity);
+    Solution out = solution_of(radiosity);
+    out.energy = energy;
     out.counters["shots"] = static_cast<double>(solver.shots());
     out.counters["rays"] = static_cast<double>(solver.rays());
     return out;
 }
 
-Done gather_adaptively(Radiosity& radiosity, const Task& task) {
+// What there is when gathering has ended: that which was looked at, or, if an interrupted step
+// towards something better has not left something worse, what that has led to.
+Solution gathered(Gathering& solver, Radiosity& radiosity, const Task& task, Demand& demand) {
+    const bool begun = demand.risen || !demand.solution;
+    if (begun) solver.finish();
+    const bool judge = begun && (demand.risen || demand.importance);
+    Solution now = !begun  ? std::move(*demand.solution)
+                   : judge ? judged_solution_of(radiosity, task.options, demand.importance)
+                           : solution_of(radiosity);
+    if (demand.risen && now.error && now.error->rms > demand.solution->error->rms)
+        return std::move(*demand.solution);
+    now.energy = balance(radiosity, task.options.seed);
+    if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
+    return now;
+}
+
+Solution gather_adaptively(Radiosity& radiosity, const Task& task) {
     const SolveOptions& options = task.options;
-    const double first = options.adaptive ? first_demand * options.error : options.error;
+    Demand demand{options.adaptive ? first_demand * options.error : options.error};
     GatheringOptions gathering;
-    gathering.error = first;
-    gathering.min_area = min_area(options, first, task.size);
+    gathering.error = demand.error;
+    gathering.min_area = min_area(options, demand.error, task.size);
     gathering.adaptive = options.adaptive;
     gathering.merge = options.merge;
     gathering.column.seed = options.seed;
@@ -323,36 +321,25 @@ Done gather_adaptively(Radiosity& radiosity, const Task& task) {
     gathering.interrupted = interruption(task);
     std::optional<Importance> importance;
     if (!task.focus.empty()) importance = find_importance(radiosity, task.focus, options.seed);
-    gathering.importance = importance ? &*importance : nullptr;
+    gathering.importance = demand.importance = importance ? &*importance : nullptr;
     Gathering solver(radiosity, gathering);
-    Ran ran = run_adaptively(solver, radiosity, task, first, nullptr, gathering.importance);
-    solver.finish();
-    std::optional<ErrorEstimate> error = ran.demand.estimate;
-    if (!error && (ran.kept || importance))
-        error = estimate_error_of(radiosity, options, gathering.importance);
-    // An interrupted step towards something better may leave something worse.
-    const bool worse = ran.kept && error && error->rms > ran.kept->error.rms;
-    Done out;
-    if (worse)
-        out = {ran.kept->energy, ran.kept->counters, ran.kept->error,
-               std::move(ran.kept->solution)};
-    else
-        out = {balance(radiosity, options.seed), counters_of(radiosity), error};
-    if (task.snapshots.take && !worse) take_snapshot(task.snapshots, radiosity, nullptr);
+    run_adaptively(solver, radiosity, task, demand, nullptr);
+    Solution out = gathered(solver, radiosity, task, demand);
     out.counters["rays"] = static_cast<double>(solver.rays());
     out.counters["shots"] = 0;
     out.counters["bytes"] = static_cast<double>(solver.bytes());
     return out;
 }
 
-Done solve_by_elements(Radiosity& radiosity, const Task& task) {
+Solution solve_by_elements(Radiosity& radiosity, const Task& task) {
     ElementOptions elements = element_options(task.options, task.size);
     elements.light_meanwhile = bool(task.snapshots.take);
     const ElementReport report =
         solve_elements(radiosity, elements, task.stop, task.clock,
                        with_snapshots(task.observe, task.snapshots, radiosity, nullptr));
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
-    Done out{balance(radiosity, task.options.seed), counters_of(radiosity)};
+    Solution out = solution_of(radiosity);
+    out.energy = balance(radiosity, task.options.seed);
     out.counters["rows"] = static_cast<double>(report.rows);
     out.counters["sweeps"] = report.sweeps;
     if (report.links) out.counters["links"] = static_cast<double>(*report.links);
@@ -382,17 +369,13 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
                     clock,   observe, snapshots,
                     focus};
-    Done done = solver_of(options) == adaptive_gathering ? gather_adaptively(radiosity, task)
-                : by_elements(options)                   ? solve_by_elements(radiosity, task)
-                                                         : shoot_adaptively(radiosity, task);
-
-    Solution solution = done.better ? std::move(*done.better) : extract_solution(radiosity);
-    solution.energy = done.energy;
+    Solution solution = solver_of(options) == adaptive_gathering
+                            ? gather_adaptively(radiosity, task)
+                        : by_elements(options) ? solve_by_elements(radiosity, task)
+                                               : shoot_adaptively(radiosity, task);
     if (!focus.empty()) solution.refined_for = RefinedFor{options.view, options.grid};
-    solution.error =
-        done.error ? done.error : estimate_error(solution, options.seed, options.error);
+    if (!solution.error) solution.error = estimate_error(solution, options.seed, options.error);
     solution.options = used(options);
-    solution.counters = done.counters;
     return solution;
 }
 
