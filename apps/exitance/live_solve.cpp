@@ -45,8 +45,9 @@ Lit solve_live(const Scene& scene, const SolveOptions& options, ViewServer& serv
         if (command == ViewCommand::stop) cancel.request();
     });
     const auto look_around = [&] {
-        if (interrupt.requested() || (!keep && server.deserted())) cancel.request();
-        if (paused && server.deserted()) paused = false;  // nobody is left who could resume
+        const bool deserted = server.deserted();
+        if (interrupt.requested() || (!keep && deserted)) cancel.request();
+        if (deserted) paused = false;  // nobody is left who could resume
     };
     Pace pace;
     Stopwatch since_told;

@@ -41,7 +41,7 @@ struct Room {
     Obstacles obstacles() const {
         std::vector<std::span<const Vec3>> outlines;
         for (const Quad& quad : quads) outlines.emplace_back(quad);
-        return Obstacles(outlines, {});
+        return Obstacles(outlines);
     }
     RayCaster caster() const {
         std::vector<Vec3> corners;

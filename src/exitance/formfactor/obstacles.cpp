@@ -32,17 +32,6 @@ std::vector<Box> bounds_of(std::span<const Blocker> blockers) {
     return boxes;
 }
 
-std::vector<Blocker> blockers_around(std::span<const std::span<const Vec3>> polygons,
-                                     const Vec3& middle) {
-    std::vector<std::vector<Vec3>> moved;
-    for (const auto& polygon : polygons) {
-        auto& corners = moved.emplace_back();
-        for (const Vec3& p : polygon) corners.push_back(p - middle);
-    }
-    const std::vector<std::span<const Vec3>> spans(moved.begin(), moved.end());
-    return find_blockers(spans);
-}
-
 class Viewer {
   public:
     Viewer(const Obstacles& obstacles, const Source& source, const ReceiverBlock& receivers,
@@ -214,8 +203,8 @@ class Viewer {
 
 }  // namespace
 
-Obstacles::Obstacles(std::span<const std::span<const Vec3>> polygons, const Vec3& middle)
-    : blockers_(blockers_around(polygons, middle)), tree_(bounds_of(blockers_)) {
+Obstacles::Obstacles(std::span<const std::span<const Vec3>> polygons)
+    : blockers_(find_blockers(polygons)), tree_(bounds_of(blockers_)) {
     Box bounds;
     for (const auto& polygon : polygons)
         for (const Vec3& p : polygon) bounds.add(p);
@@ -223,10 +212,8 @@ Obstacles::Obstacles(std::span<const std::span<const Vec3>> polygons, const Vec3
 }
 
 std::size_t Obstacles::bytes() const {
-    std::size_t sum = blockers_.capacity() * sizeof(Blocker);
-    for (const Blocker& b : blockers_)
-        sum += b.planes.capacity() * sizeof(Plane) + b.corners.capacity() * sizeof(Vec3) +
-               b.edges.capacity() * sizeof(Blocker::Edge);
+    std::size_t sum = 0;
+    for (const Blocker& blocker : blockers_) sum += blocker.bytes();
     return sum;
 }
 

@@ -16,8 +16,8 @@ namespace exitance {
 /// All that stands in a scene, relative to its middle.
 class Obstacles {
   public:
-    /// `polygons` are planar and convex and block both ways.
-    Obstacles(std::span<const std::span<const Vec3>> polygons, const Vec3& middle);
+    /// `polygons`, relative to that middle, are planar and convex and block both ways.
+    explicit Obstacles(std::span<const std::span<const Vec3>> polygons);
 
     std::span<const Blocker> blockers() const { return blockers_; }
     const BoxTree& tree() const { return tree_; }

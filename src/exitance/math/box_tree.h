@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numeric>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "exitance/math/box.h"
@@ -26,17 +27,11 @@ class BoxTree {
     void for_overlapping(const Box& box, const Visit& visit) const {
         for_accepted([&](const Box& other) { return overlap(other, box); }, visit);
     }
-    /// For every box that `accept(const Box&)` takes; it takes all that contain one it takes.
+    /// For every box that `accept(const Box&)` takes; it takes all that contain one it takes. A
+    /// `visit` that returns false ends it.
     template <class Accept, class Visit>
     void for_accepted(const Accept& accept, const Visit& visit) const {
         if (!nodes_.empty()) walk(0, accept, visit);
-    }
-
-    /// Calls `visit(std::uint32_t)` for every box for which `meets(const Box&)` holds, until it
-    /// returns false; `meets` must hold for a box that contains one for which it does.
-    template <class Meets, class Visit>
-    void for_meeting(const Meets& meets, const Visit& visit) const {
-        if (!nodes_.empty()) walk_meeting(0, meets, visit);
     }
 
   private:
@@ -81,26 +76,19 @@ class BoxTree {
     }
 
     template <class Accept, class Visit>
-    void walk(std::size_t at, const Accept& accept, const Visit& visit) const {
+    bool walk(std::size_t at, const Accept& accept, const Visit& visit) const {
         const Node& node = nodes_[at];
-        if (!accept(node.box)) return;
-        if (node.right == 0) {
-            for (std::uint32_t i = node.begin; i < node.end; ++i)
-                if (accept(boxes_[order_[i]])) visit(order_[i]);
-            return;
-        }
-        walk(at + 1, accept, visit);
-        walk(node.right, accept, visit);
+        if (!accept(node.box)) return true;
+        if (node.right != 0) return walk(at + 1, accept, visit) && walk(node.right, accept, visit);
+        for (std::uint32_t i = node.begin; i < node.end; ++i)
+            if (accept(boxes_[order_[i]]) && !goes_on(visit, order_[i])) return false;
+        return true;
     }
 
-    template <class Meets, class Visit>
-    bool walk_meeting(std::size_t at, const Meets& meets, const Visit& visit) const {
-        const Node& node = nodes_[at];
-        if (!meets(node.box)) return true;
-        if (node.right != 0)
-            return walk_meeting(at + 1, meets, visit) && walk_meeting(node.right, meets, visit);
-        for (std::uint32_t i = node.begin; i < node.end; ++i)
-            if (meets(boxes_[order_[i]]) && !visit(order_[i])) return false;
+    template <class Visit>
+    static bool goes_on(const Visit& visit, std::uint32_t i) {
+        if constexpr (std::is_same_v<decltype(visit(i)), bool>) return visit(i);
+        visit(i);
         return true;
     }
 

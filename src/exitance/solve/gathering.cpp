@@ -29,11 +29,14 @@ std::optional<Obstacles> obstacles_of(const Radiosity& radiosity) {
     if (scene.polygons.size() > most_polygons_as_obstacles || radiosity.caster.has_glass())
         return {};
     std::vector<std::array<Vec3, 4>> corners;
-    for (const Polygon& polygon : scene.polygons) corners.push_back(scene.corners(polygon));
+    for (const Polygon& polygon : scene.polygons) {
+        corners.push_back(scene.corners(polygon));
+        for (Vec3& corner : corners.back()) corner = corner - radiosity.caster.middle();
+    }
     std::vector<std::span<const Vec3>> outlines;
     for (std::size_t p = 0; p < corners.size(); ++p)
         outlines.emplace_back(corners[p].data(), scene.polygons[p].size());
-    return Obstacles(outlines, radiosity.caster.middle());
+    return Obstacles(outlines);
 }
 
 }  // namespace
@@ -266,7 +269,7 @@ Progress Gathering::progress() const {
 
 std::size_t Gathering::bytes() const {
     return radiosity_.bytes() + direct_.bytes() + (reflected_ ? reflected_->bytes() : 0) +
-           (indirect_ ? indirect_->irradiance.bytes() : 0);
+           (indirect_ ? indirect_->irradiance.bytes() : 0) + (obstacles_ ? obstacles_->bytes() : 0);
 }
 
 }  // namespace exitance

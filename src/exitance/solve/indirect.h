@@ -65,6 +65,7 @@ class IndirectLight {
         ElementId element;
         std::uint32_t test = 0;
         float light = 0, variance = 0;
+        float allowed = 0;    ///< departure of light
         bool middle = false;  ///< of a quad, as against on a side
     };
     struct Tests {
@@ -80,7 +81,7 @@ class IndirectLight {
     Tests tests_of(const std::vector<ElementId>& elements) const;
     bool worth_testing(const Element& element) const;
     bool touched(const Element& element) const;
-    bool fails(const Expected& expected, const Test& test, float found) const;
+    static bool fails(const Expected& expected, const Test& test, float found);
     void close(ElementId id, std::span<const float> middle);
     void divide(const std::vector<ElementId>& elements);
     void interpolate(const Element& whole, const std::array<std::int32_t, 2>& place, VertexId to);

@@ -139,15 +139,16 @@ namespace {
 
 // Others do not know what matters to whom.
 void require_focus_possible(const SolveOptions& o) {
-    if ((!o.view && !o.grid) || solver_of(o) == adaptive_gathering) return;
+    const std::string solver = solver_of(o);
+    if ((!o.view && !o.grid) || solver == adaptive_gathering) return;
     refuse(std::string(o.view ? "--view " + *o.view : "--grid " + *o.grid) +
-           " cannot be had with --solver " + solver_of(o) +
+           " cannot be had with --solver " + solver +
            ", which refines for all places alike; expected --solver gathering");
 }
 
 // Of the solvers that divide elements as light needs it.
 void require_adaptive(const SolveOptions& o) {
-    const std::string with = " cannot be had with --solver " + solver_of(o);
+    const std::string solver = solver_of(o), with = " cannot be had with --solver " + solver;
     const std::string elements = "; expected a solver of elements, as --solver jacobi";
     if (o.transport && *o.transport != "on-the-fly")
         refuse("--transport " + *o.transport + with +
@@ -157,7 +158,7 @@ void require_adaptive(const SolveOptions& o) {
     if (o.vertices)
         refuse("--vertices" + with + ", which solves for the vertices themselves" + elements);
     if (o.element_rays) refuse("--element-rays" + with + ", which has no rows" + elements);
-    if (solver_of(o) == adaptive_shooting) return;
+    if (solver == adaptive_shooting) return;
     const std::string shooting = "; expected --solver shooting";
     if (o.unshot) refuse("--unshot" + with + ", which is done with all light at once" + shooting);
     if (o.next_shot) refuse("--next-shot" + with + ", which does not shoot" + shooting);
@@ -175,12 +176,12 @@ void require_adaptive(const SolveOptions& o) {
 void require_possible(const SolveOptions& o) {
     require_focus_possible(o);
     if (!by_elements(o)) return require_adaptive(o);
-    const std::string with = " cannot be had with --solver " + solver_of(o);
+    const std::string solver = solver_of(o), with = " cannot be had with --solver " + solver;
     const bool links = o.transport == "links";
     if (o.min_area && !links)
         refuse("--min-area" + with +
                ": its elements stay as they are; expected --element-size, or --transport links");
-    if (o.transport && !go_together(element_method(solver_of(o)), *o.transport))
+    if (o.transport && !go_together(element_method(solver), *o.transport))
         refuse("--transport " + *o.transport + with +
                (links
                     ? ": a sample of its rows costs more than a whole product over links; expected "
@@ -190,7 +191,7 @@ void require_possible(const SolveOptions& o) {
     if (o.factors && (links || o.transport == "stochastic"))
         refuse("--factors cannot be had with --transport " + *o.transport +
                ", which has no matrix; expected dense or sparse");
-    if (o.next_shot && solver_of(o) != "southwell")
+    if (o.next_shot && solver != "southwell")
         refuse("--next-shot" + with +
                ", which does not choose what to shoot next; expected --unshot");
     if (!o.occlusion)

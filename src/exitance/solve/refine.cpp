@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "exitance/math/polygon.h"
-#include "exitance/run/random.h"
+#include "exitance/solve/place_on_face.h"
 #include "exitance/visibility/exposure.h"
 
 namespace exitance {
@@ -28,19 +28,6 @@ constexpr int thorough_level = 1;
 // The least side of a long element, in terms of its length, that its smallness is judged by.
 constexpr double longest_aspect = 8;
 constexpr std::size_t batch_size = 1024;
-
-struct Place {
-    FaceId face;
-    std::int32_t u, v;
-    friend bool operator==(const Place&, const Place&) = default;
-};
-
-struct PlaceHash {
-    std::size_t operator()(const Place& p) const {
-        return hash_bits(p.face.value, static_cast<std::uint32_t>(p.u),
-                         static_cast<std::uint32_t>(p.v));
-    }
-};
 
 // What is known of the shooter's light at the corners of an element.
 struct Corners {
@@ -156,7 +143,7 @@ class Refinement {
                 if (fresh)
                     points_.add(mesh.sample_point(element, u, v) - radiosity_.caster.middle(),
                                 mesh.normal(face, u, v),
-                                static_cast<std::uint32_t>(PlaceHash{}(slot->first)));
+                                static_cast<std::uint32_t>(HashOfPlace{}(slot->first)));
             }
         }
         lit_.reset(points_.size(), radiosity_.columns.stride);
@@ -295,7 +282,7 @@ class Refinement {
     const RefineOptions& options_;
     const Illuminate& illuminate_;
 
-    tsl::robin_map<Place, std::uint32_t, PlaceHash> places_;
+    tsl::robin_map<PlaceOnFace, std::uint32_t, HashOfPlace> places_;
     Receivers points_;
     Received lit_;
     std::vector<char> open_;

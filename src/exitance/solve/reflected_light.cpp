@@ -21,6 +21,9 @@ std::uint32_t balance_rays(double error) {
     return static_cast<std::uint32_t>(std::clamp(64 * 0.02 / error, 16.0, 1024.0));
 }
 
+// What is left when the balance counts as struck: products are cheap, the rays have been cast.
+constexpr double balance_residual = 1e-6;
+
 // Cells of a patch, along a side. What varies faster than that is far smaller than the patch, and
 // seen as a whole from everywhere but itself.
 constexpr std::uint32_t most_steps = 8;
@@ -129,7 +132,7 @@ void ReflectedLight::balance() {
     rays_ += std::uint64_t{n} * caster_.rays();
     SparseTransport transport(std::move(areas), rows_.area, 0.0);
     ElementSolverOptions solving;
-    solving.error = 1e-6;
+    solving.error = balance_residual;
     const auto solver = element_method("jacobi").make(system, transport, solving);
     run(*solver, Stop{}, Stopwatch(), {});
     const RowField& R = solver->reflected();
@@ -224,7 +227,7 @@ void ReflectedLight::divide_into_cells() {
         cells.first = static_cast<std::uint32_t>(count);
         cells.steps = std::min(std::bit_floor(static_cast<std::uint32_t>(most)), 1u << levels);
         cells.triangle = mesh[root].count == 3;
-        count += std::size_t{cells.steps} * cells.steps * (cells.triangle ? 2 : 1);
+        count += cells.count();
         cells_.push_back(cells);
     }
     exitance_.resize(count * stride);
@@ -246,11 +249,11 @@ void ReflectedLight::fill_cells() {
                 const Element& leaf = mesh[id];
                 const auto shot = radiosity_.shot[id];
                 std::fill(shot.begin(), shot.end(), 0.0f);
-                if (radiosity_.open_share(leaf) > 0) {
+                const bool open = radiosity_.open_share(leaf) > 0;
+                if (open) {
                     radiosity_.mean_irradiance(id, D);
                     find_slopes(leaf, slope_s, slope_t);
                 }
-                const bool open = radiosity_.open_share(leaf) > 0;
                 const auto rho = radiosity_.rho(id);
                 const auto reflected = [&](std::size_t c, float s, float t) {
                     const float H = balanced ? irradiance_[RowId(i)][c] : 0.0f;
@@ -266,9 +269,7 @@ void ReflectedLight::fill_cells() {
                 });
             });
             const Cells& own = cells_[i];
-            const std::size_t end =
-                own.first + std::size_t{own.steps} * own.steps * (own.triangle ? 2 : 1);
-            for (std::size_t cell = own.first; cell < end; ++cell)
+            for (std::size_t cell = own.first; cell < own.first + own.count(); ++cell)
                 for (std::size_t c = 0; area[cell] > 0 && c < stride; ++c)
                     exitance_[cell * stride + c] /= area[cell];
         },

@@ -75,6 +75,7 @@ class ReflectedLight {
         std::uint32_t steps = 1;
         bool triangle = false;
 
+        std::size_t count() const { return std::size_t{steps} * steps * (triangle ? 2 : 1); }
         std::size_t at(float x, float y) const;
         template <class Visit>
         void visit_those_of(const Element& leaf, const Element& root, const Visit& visit) const;

@@ -59,15 +59,19 @@ ElementCaster::ElementCaster(const ElementScene& scene, const ElementRows& rows,
 }
 
 bool ElementCaster::cast_place(std::size_t row, std::uint32_t place, Ends& ends) const {
+    const std::uint64_t key = hash_bits(seed_, rows_.elements[row].value);
+    const auto at = low_discrepancy(hash_bits(key, 1), shuffled(place, hash_bits(key, 2)));
+    return cast_from(row, at, key, place, ends);
+}
+
+bool ElementCaster::cast_from(std::size_t row, const UnitSquare& place, std::uint64_t key,
+                              std::uint32_t packet, Ends& ends) const {
     const Element& element = scene_.mesh[rows_.elements[row]];
     const Face& face = scene_.mesh.face_of(element);
-    const std::uint64_t key = hash_bits(seed_, rows_.elements[row].value);
     const auto corners = scene_.mesh.corners(element);
-    const Vec3 point =
-        uniform_polygon({corners.data(), element.count},
-                        low_discrepancy(hash_bits(key, 1), shuffled(place, hash_bits(key, 2))));
+    const Vec3 point = uniform_polygon({corners.data(), element.count}, place);
     if (!scene_.owners.owns(face.polygon, face.back, point - scene_.caster.middle())) return false;
-    cast_packet(point, face.normal, key, place, ends);
+    cast_packet(point, face.normal, key, packet, ends);
     // As in visibility/exposure.h: mostly backs are seen from inside a solid.
     return ends.black <= RayPacket::width / 2;
 }

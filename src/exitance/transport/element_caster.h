@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "exitance/math/warp.h"
 #include "exitance/transport/element_rows.h"
 
 namespace exitance {
@@ -68,6 +69,11 @@ class ElementCaster {
     /// picks their directions. Every power of two of packets is stratified.
     void cast_packet(const Vec3& point, const Vec3& normal, std::uint64_t key, std::uint32_t packet,
                      Ends& ends) const;
+
+    /// Such a packet from `place` on row `row`, a point of the unit square; false if that stands
+    /// under other things or is another polygon's.
+    bool cast_from(std::size_t row, const UnitSquare& place, std::uint64_t key,
+                   std::uint32_t packet, Ends& ends) const;
 
     /// The same of any rays, from origins relative to middle().
     void cast(const RayPacket& rays, Ends& ends) const;

@@ -171,11 +171,11 @@ Meeting LinkExchange::between(const End& a, const End& b) const {
     const Shaft shaft(box_a, box_b);
     std::size_t met = 0;
     bool hidden = false;
-    tree_[0].for_meeting([&](const Box& box) { return !shaft.misses(box); },
-                         [&](std::uint32_t i) {
-                             hidden = hides(blockers_[i], box_a, box_b);
-                             return !hidden && ++met < most_blockers;
-                         });
+    tree_[0].for_accepted([&](const Box& box) { return !shaft.misses(box); },
+                          [&](std::uint32_t i) {
+                              hidden = hides(blockers_[i], box_a, box_b);
+                              return !hidden && ++met < most_blockers;
+                          });
     return hidden ? Meeting::none : met > 0 ? Meeting::partly : Meeting::seen;
 }
 
@@ -334,10 +334,7 @@ Meeting LinkExchange::measure(NodeId node_a, NodeId node_b, double open_a, doubl
 
 std::size_t LinkExchange::bytes() const {
     std::size_t sum = 0;
-    for (const Blocker& blocker : blockers_)
-        sum += sizeof(Blocker) + blocker.planes.capacity() * sizeof(Plane) +
-               blocker.corners.capacity() * sizeof(Vec3) +
-               blocker.edges.capacity() * sizeof(Blocker::Edge);
+    for (const Blocker& blocker : blockers_) sum += blocker.bytes();
     return sum;
 }
 

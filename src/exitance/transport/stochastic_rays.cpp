@@ -45,18 +45,11 @@ double StochasticRays::power(std::size_t row, std::span<const float> exitance) c
 }
 
 bool StochasticRays::cast(std::size_t row, std::uint32_t packet, ElementCaster::Ends& ends) const {
-    const Element& element = scene_.mesh[rows_.elements[row]];
-    const Face& face = scene_.mesh.face_of(element);
     const std::uint64_t key = hash_bits(options_.seed, 0x57ull, rows_.elements[row].value);
-    const auto corners = scene_.mesh.corners(element);
     // Places and directions are two sequences that have nothing to do with each other (Burley
     // 2020).
     const std::uint32_t place = owen_scramble(packet, static_cast<std::uint32_t>(key >> 16));
-    const Vec3 from =
-        uniform_polygon({corners.data(), element.count}, low_discrepancy(hash_bits(key), place));
-    if (!scene_.owners.owns(face.polygon, face.back, from - scene_.caster.middle())) return false;
-    caster_.cast_packet(from, face.normal, key, packet, ends);
-    return ends.black <= RayPacket::width / 2;  // as in visibility/exposure.h
+    return caster_.cast_from(row, low_discrepancy(hash_bits(key), place), key, packet, ends);
 }
 
 void StochasticRays::send(std::span<const Shooter> shooters, const RowField& exitance,

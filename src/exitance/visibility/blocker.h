@@ -27,6 +27,11 @@ struct Blocker {
     std::vector<Vec3> corners;
     std::vector<Edge> edges;
     Box bounds;
+
+    std::size_t bytes() const {
+        return sizeof(Blocker) + planes.capacity() * sizeof(Plane) +
+               corners.capacity() * sizeof(Vec3) + edges.capacity() * sizeof(Edge);
+    }
 };
 
 Blocker make_sheet(std::span<const Vec3> outline, const Plane& plane);
