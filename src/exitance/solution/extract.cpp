@@ -20,6 +20,9 @@ struct KeyHash {
     std::size_t operator()(std::uint64_t key) const { return hash_bits(key); }
 };
 
+// Cosine between normals of surfaces that lie in one plane.
+constexpr float same_direction = 0.999f;
+
 class Extraction {
   public:
     Extraction(const Radiosity& radiosity, std::span<const float> unshot, Solution& out)
@@ -111,6 +114,7 @@ class Extraction {
         const std::size_t stride = stride_, count = mesh_.vertices().size();
         buried_.assign(count * stride, 0.0f);
         std::vector<char> known = radiosity_.exposed;
+        take_from_across(known);
         std::vector<ElementId> open = leaves_;
         for (bool found = true; found;) {
             std::vector<std::uint32_t> neighbours(count, 0);
@@ -138,6 +142,31 @@ class Extraction {
                 found = true;
             }
             open = std::move(rest);
+        }
+    }
+
+    // Where a surface is cut along what stands on it, the two sides have vertices of their own:
+    // those under it take what those outside have, or its outline is dotted with dark pixels.
+    void take_from_across(std::vector<char>& known) {
+        std::vector<VertexId> open;
+        for (std::size_t v = 0; v < known.size(); ++v)
+            if (known[v]) open.push_back(VertexId(v));
+        const auto place = [&](VertexId v) { return mesh_[v].position.value; };
+        const auto before = [&](VertexId a, VertexId b) { return place(a) < place(b); };
+        std::stable_sort(open.begin(), open.end(), before);
+        for (std::size_t i = 0; i < known.size(); ++i) {
+            if (known[i]) continue;
+            const VertexId v(i);
+            const auto [begin, end] = std::equal_range(open.begin(), open.end(), v, before);
+            float found = 0;
+            for (auto w = begin; w != end; ++w) {
+                if (dot(mesh_[*w].normal, mesh_[v].normal) < same_direction) continue;
+                ++found;
+                for (std::size_t c = 0; c < stride_; ++c) buried_[i * stride_ + c] += light(*w)[c];
+            }
+            for (std::size_t c = 0; c < stride_; ++c)
+                buried_[i * stride_ + c] /= std::max(found, 1.0f);
+            known[i] = found > 0;
         }
     }
 
