@@ -37,7 +37,7 @@ std::string told(const Progress& progress, bool paused) {
 
 Lit solve_live(const Scene& scene, const SolveOptions& options, ViewServer& server,
                const std::filesystem::path& file, const Observer& observe, const Cancel& interrupt,
-               bool keep, const Snapshots& snapshots) {
+               bool keep, const Snapshots& snapshots, Resumption* resumed) {
     Cancel cancel;
     std::atomic<bool> paused = false;
     server.on_command([&](ViewCommand command) {
@@ -74,7 +74,7 @@ Lit solve_live(const Scene& scene, const SolveOptions& options, ViewServer& serv
         if (snapshots.take) snapshots.take(std::move(so_far));
     };
     shown.wanted = [&](const Progress&) { return server.has_pages() && pace.due(); };
-    Solution solution = light(scene, options, watch, &cancel, shown);
+    Solution solution = light(scene, options, watch, &cancel, shown, resumed);
     server.on_command({});
     write_solution(solution, file);
     server.show(file);

@@ -24,6 +24,6 @@ struct Lit {
 /// `keep`, the closing of the last page stop it. What `snapshots` ask for is done besides.
 Lit solve_live(const Scene& scene, const SolveOptions& options, ViewServer& server,
                const std::filesystem::path& file, const Observer& observe, const Cancel& interrupt,
-               bool keep, const Snapshots& snapshots);
+               bool keep, const Snapshots& snapshots, Resumption* resumed = nullptr);
 
 }  // namespace exitance::cli

@@ -43,6 +43,13 @@ class SolveCommand {
                 "--output,-o", output_,
                 "the solution: a glTF file; needed unless --log csv or --compare ask for numbers")
             ->type_name("file.glb");
+        command
+            .add_option(
+                "--resume", resume_,
+                "go on from this solution of the same scene, that was stopped or made for a larger "
+                "error: begins with its mesh, and returns it if nothing better is found; may be "
+                "the file of --output")
+            ->type_name("file.glb");
         command.add_flag("--compare", compare_,
                          "solve by every solver and transport in turn and print a table instead: "
                          "work, time, residual, difference from the converged solution, memory");
@@ -67,6 +74,7 @@ class SolveCommand {
             "  exitance solve scenes/cornell.toml -o cornell.glb\n"
             "  exitance solve scenes/cornell.toml -o draft.glb --error 0.1 --time 10\n"
             "  exitance solve scenes/cornell.toml -o front.glb --view front\n"
+            "  exitance solve scenes/cornell.toml -o cornell.glb --resume draft.glb --error 0.01\n"
             "\n"
             "Ctrl-C stops cleanly and writes what is solved. A project's [solve] table sets the\n"
             "same options by the same names; the command line wins.");
@@ -75,6 +83,8 @@ class SolveCommand {
     void run() {
         if (output_ && compare_)
             throw Error(Fault::wrong_use, "--compare prints a table and writes no --output");
+        if (resume_ && compare_)
+            throw Error(Fault::wrong_use, "--compare begins every solve anew: no --resume");
         if (output_)
             require_output(*output_, scene_, {".glb"});
         else if (reporting_.log != "csv" && !compare_)
@@ -87,6 +97,13 @@ class SolveCommand {
         const bool live = options_.view && options_.view->empty();
         if (live) options_.view = setting_of(scene, "view");
 
+        std::optional<Resumption> resumption;
+        if (resume_) {
+            require_resumable(options_);
+            resumption.emplace(Resumption{read_solution(*resume_)});
+        }
+        Resumption* const resumed = resumption ? &*resumption : nullptr;
+
         const Interrupt interrupt;
         if (compare_) {
             fmt::print("{}", compare_solvers(scene, options_, interrupt.cancel()));
@@ -95,16 +112,16 @@ class SolveCommand {
 #ifdef EXITANCE_VIEWER
         if (!walking_.open && !live)
             throw Error(Fault::wrong_use, "--no-open goes with --view alone, without a camera");
-        if (live) return solve_and_view(scene, interrupt.cancel());
+        if (live) return solve_and_view(scene, resumed, interrupt.cancel());
 #else
         if (live) throw Error(Fault::wrong_use, "--view: expected the name of a camera");
 #endif
         const Stopwatch watch;
         const Solution solution =
-            light(scene, options_, make_observer(reporting_), &interrupt.cancel());
+            light(scene, options_, make_observer(reporting_), &interrupt.cancel(), {}, resumed);
         clear_bar(reporting_);
         if (output_) write_solution(solution, *output_);
-        report(solution, watch, interrupt.cancel().requested());
+        report(solution, watch, interrupt.cancel().requested(), resumed);
     }
 
   private:
@@ -113,7 +130,7 @@ class SolveCommand {
     ReadOptions read_options_;
     GivenOptions reading_;
     std::filesystem::path scene_;
-    std::optional<std::filesystem::path> output_;
+    std::optional<std::filesystem::path> output_, resume_;
     bool compare_ = false;
     Reporting reporting_;
 
@@ -124,26 +141,33 @@ class SolveCommand {
         return out;
     }
 
-    void report(const Solution& solution, const Stopwatch& watch, bool stopped) const {
+    void report(const Solution& solution, const Stopwatch& watch, bool stopped,
+                const Resumption* resumed) const {
         if (reporting_.quiet) return;
         // A table on stdout stays one.
         std::FILE* said = reporting_.log == "csv" ? stderr : stdout;
         if (stopped) fmt::print(said, "{}\n", stopped_early);
+        if (resumed && resumed->outcome != Resumption::Outcome::improved)
+            fmt::print(said, "{} {}\n", resume_->string(),
+                       resumed->outcome == Resumption::Outcome::sufficient
+                           ? "has the error asked for: nothing is left to do"
+                           : "is kept: nothing better was found");
         fmt::print(said, "{}", summary(solution, output_.value_or("not written"), watch.seconds()));
     }
 
 #ifdef EXITANCE_VIEWER
     WalkthroughOptions walking_;
 
-    void solve_and_view(const Scene& scene, const Cancel& interrupt) {
+    void solve_and_view(const Scene& scene, Resumption* resumed, const Cancel& interrupt) {
         if (!output_) throw Error(Fault::wrong_use, "--view needs --output");
         if (reporting_.log == "csv")
             throw Error(Fault::wrong_use, "--view prints an address, --log csv a table");
         walking_.solve_to_end = true;
         Walkthrough walk(walking_, reporting_);
         const Stopwatch watch;
-        const Lit lit = walk.light(scene, options_, *output_, interrupt, {.ambient = true});
-        report(lit.solution, watch, lit.stopped);
+        const Lit lit =
+            walk.light(scene, options_, *output_, interrupt, {.ambient = true}, resumed);
+        report(lit.solution, watch, lit.stopped, resumed);
         std::fflush(stdout);
         walk.stay_if_watched(interrupt);
     }

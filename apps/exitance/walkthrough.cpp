@@ -68,9 +68,9 @@ Walkthrough::Walkthrough(const WalkthroughOptions& options, const Reporting& rep
 
 Lit Walkthrough::light(const Scene& scene, const SolveOptions& solving,
                        const std::filesystem::path& file, const Cancel& interrupt,
-                       const Snapshots& snapshots) {
+                       const Snapshots& snapshots, Resumption* resumed) {
     Lit lit = solve_live(scene, solving, server_, file, make_observer(reporting_), interrupt,
-                         options_.keep || options_.solve_to_end, snapshots);
+                         options_.keep || options_.solve_to_end, snapshots, resumed);
     clear_bar(reporting_);
     return lit;
 }

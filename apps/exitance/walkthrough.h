@@ -43,7 +43,7 @@ class Walkthrough {
 
     /// Lights `scene` while pages watch, as solve_live() does.
     Lit light(const Scene& scene, const SolveOptions& solving, const std::filesystem::path& file,
-              const Cancel& interrupt, const Snapshots& snapshots);
+              const Cancel& interrupt, const Snapshots& snapshots, Resumption* resumed = nullptr);
 
     /// Returns when the last page has closed, unless they are to stay, or on `interrupt`.
     void stay(const Cancel& interrupt) const;

@@ -11,10 +11,13 @@
 
 #include "exitance/render/camera_rays.h"
 #include "exitance/run/error.h"
+#include "exitance/scene/formats/source_text.h"
 #include "exitance/solution/balance.h"
+#include "exitance/solution/demand.h"
 #include "exitance/solution/error_estimate.h"
 #include "exitance/solution/extract.h"
 #include "exitance/solution/probe.h"
+#include "exitance/solution/resume.h"
 #include "exitance/solution/surface_probe.h"
 #include "exitance/solve/divide.h"
 #include "exitance/solve/element_methods.h"
@@ -173,66 +176,6 @@ Focus focus_of(const Scene& scene, const SolveOptions& options) {
     return out;
 }
 
-using Counters = std::map<std::string, double>;
-
-Counters counters_of(const Radiosity& radiosity) {
-    return {{"vertices", static_cast<double>(radiosity.mesh.vertices().size())},
-            {"patches", static_cast<double>(radiosity.mesh.patches().size())},
-            {"elements", static_cast<double>(radiosity.mesh.elements().size())},
-            {"bytes", static_cast<double>(radiosity.bytes())}};
-}
-
-Solution solution_of(const Radiosity& radiosity) {
-    Solution out = extract_solution(radiosity);
-    out.counters = counters_of(radiosity);
-    return out;
-}
-
-// The same, with what held-out points say of it.
-Solution judged_solution_of(const Radiosity& radiosity, const SolveOptions& options,
-                            const Importance* importance) {
-    std::vector<PatchId> patches;
-    Solution out = extract_solution(radiosity, {}, &patches);
-    out.counters = counters_of(radiosity);
-    TriangleImportance of_triangles;
-    for (const PatchId patch : patches) {
-        if (!importance) break;
-        of_triangles.shown.push_back(importance->shown[patch.index()]);
-        of_triangles.weight.push_back(importance->weight[patch.index()]);
-        of_triangles.echo.push_back(importance->echo[patch.index()]);
-    }
-    out.error =
-        estimate_error(out, options.seed, options.error, importance ? &of_triangles : nullptr);
-    return out;
-}
-
-/// What is demanded of a solver. It does what should lead to that error; held-out points tell
-/// whether it led to the error asked for, and if not, more is demanded while that helps.
-struct Demand {
-    double error;
-    const Importance* importance = nullptr;  ///< if there: where it is demanded
-    double found = INFINITY;                 ///< by the held-out points, the last time
-    std::optional<Solution> solution{};      ///< that they looked at the last time, with its error
-    bool risen = false;                      ///< more was demanded after that
-
-    bool rise(const SolveOptions& options, const Radiosity& radiosity) {
-        constexpr double least = 0.1, worthwhile = 0.9;
-        risen = false;
-        if (!options.adaptive || options.unshot || options.next_shot) return false;
-        solution = judged_solution_of(radiosity, options, importance);
-        const auto& estimate = solution->error;
-        // What fills a picture may be small and wrong: few points show it, and leave much doubt.
-        const double doubt = importance && estimate ? estimate->confidence : 0.0;
-        if (!estimate || estimate->rms + doubt <= options.error) return false;
-        const bool had_begun = error <= options.error;
-        if (had_begun && estimate->rms > worthwhile * found) return false;
-        if (error <= least * options.error) return false;
-        found = estimate->rms;
-        error *= std::clamp(0.8 * options.error / found, 0.4, 0.8);
-        return risen = true;
-    }
-};
-
 // Gathering usually does better than what is demanded of it, and goes on from a rough solution at
 // little cost.
 constexpr double first_demand = 1.4;
@@ -248,6 +191,11 @@ struct Task {
     const Focus& focus;
 };
 
+std::optional<RefinedFor> refined_for(const Task& task) {
+    if (task.focus.empty()) return std::nullopt;
+    return RefinedFor{task.options.view, task.options.grid};
+}
+
 std::function<bool()> interruption(const Task& task) {
     return [&task] { return task.stop.interruption(task.clock).has_value(); };
 }
@@ -261,7 +209,7 @@ void run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& ta
     const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, shooting);
     double left = 1;
     const Observer tell = [&](Progress progress) {
-        if (demand.solution && demand.solution->error) progress.error = demand.solution->error->rms;
+        if (demand.best) progress.error = demand.best->rms;
         if (!shooting)
             progress.fraction_left =
                 left * (1 - share_of_rest + share_of_rest * progress.fraction_left);
@@ -269,7 +217,9 @@ void run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& ta
     };
     while (run(solver, task.stop, task.clock, tell) == Ended::converged) {
         if (!demand.rise(task.options, radiosity)) break;
-        if (!shooting) demand.solution->energy = balance(radiosity, task.options.seed);
+        if (!shooting && demand.is_of_mesh)
+            demand.solution->energy = balance(radiosity, task.options.seed);
+        demand.is_of_mesh = false;
         left *= 1 - share_of_rest;
         solver.demand(demand.error, min_area(task.options, demand.error, task.size));
     }
@@ -293,24 +243,68 @@ Solution shoot_adaptively(Radiosity& radiosity, const Task& task) {
 }
 
 // What there is when gathering has ended: that which was looked at, or, if an interrupted step
-// towards something better has not left something worse, what that has led to.
-Solution gathered(Gathering& solver, Radiosity& radiosity, const Task& task, Demand& demand) {
-    const bool begun = demand.risen || !demand.solution;
-    if (begun) solver.finish();
-    const bool judge = begun && (demand.risen || demand.importance);
-    Solution now = !begun  ? std::move(*demand.solution)
-                   : judge ? judged_solution_of(radiosity, task.options, demand.importance)
-                           : solution_of(radiosity);
-    if (demand.risen && now.error && now.error->rms > demand.solution->error->rms)
-        return std::move(*demand.solution);
-    now.energy = balance(radiosity, task.options.seed);
+// towards something better has not left something worse, what that has led to. Nothing if what is
+// resumed was the best.
+std::optional<Solution> gathered(Gathering& solver, Radiosity& radiosity, const Task& task,
+                                 Demand& demand) {
+    if ((!demand.best && !demand.solution) || (demand.risen && solver.has_light())) {
+        solver.finish();
+        const bool judge = demand.risen || demand.importance;
+        demand.take_if_better(judge ? judged_solution_of(radiosity, task.options, demand.importance)
+                                    : solution_of(radiosity));
+    }
+    if (!demand.solution || !demand.is_of_mesh) return std::move(demand.solution);
+    demand.solution->energy = balance(radiosity, task.options.seed);
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
-    return now;
+    return std::move(demand.solution);
 }
 
-Solution gather_adaptively(Radiosity& radiosity, const Task& task) {
+// Whether held-out points have looked at a solution where this solve would have them look, and
+// closely enough: of what may be good enough as closely as it is asked for.
+bool is_looked_at(const Solution& kept, const Task& task, const Demand& demand) {
+    const SolveOptions& options = task.options;
+    const RefinedFor there = kept.refined_for.value_or(RefinedFor{});
+    if (!kept.error || there.camera != options.view || there.grid != options.grid) return false;
+    const auto option = kept.options.find("error");
+    const auto told = option == kept.options.end() ? std::nullopt : finite_number(option->second);
+    return !demand.met_by(*kept.error, options) || (told && *told <= options.error);
+}
+
+// Takes the mesh of what is resumed over, and that itself as the best there is so far. Whether
+// there is nothing left to do.
+bool resume(Resumption& resumption, Radiosity& radiosity, const Task& task, Demand& demand) {
+    const SolveOptions& options = task.options;
+    Solution& kept = resumption.from;
+    bool same_weights = true;
+    for (std::size_t g = 0; g < kept.groups.size(); ++g)
+        same_weights = same_weights && kept.groups[g].weight == radiosity.groups.groups[g].weight;
+    describe_anew(kept, radiosity);
+    const std::vector<PatchId> patches = take_over_mesh(radiosity, kept);
+    std::optional<ErrorEstimate> estimate = kept.error;
+    if (!same_weights || !is_looked_at(kept, task, demand)) {
+        std::optional<TriangleImportance> weights;
+        if (demand.importance) weights = importance_of(patches, *demand.importance);
+        estimate = estimate_error(kept, options.seed, options.error, weights ? &*weights : nullptr);
+    }
+    resumption.outcome = Resumption::Outcome::kept;
+    if (estimate && demand.met_by(*estimate, options)) {
+        kept.error = estimate, kept.refined_for = refined_for(task);
+        resumption.outcome = Resumption::Outcome::sufficient;
+        return true;
+    }
+    if (task.snapshots.take && task.snapshots.wanted) task.snapshots.take(kept);
+    demand.resume(kept, estimate, options);
+    return false;
+}
+
+Solution gather_adaptively(Radiosity& radiosity, const Task& task, Resumption* resumption) {
     const SolveOptions& options = task.options;
     Demand demand{options.adaptive ? first_demand * options.error : options.error};
+    std::optional<Importance> importance;
+    if (!task.focus.empty()) importance = find_importance(radiosity, task.focus, options.seed);
+    demand.importance = importance ? &*importance : nullptr;
+    if (resumption && resume(*resumption, radiosity, task, demand))
+        return std::move(resumption->from);
     GatheringOptions gathering;
     gathering.error = demand.error;
     gathering.min_area = min_area(options, demand.error, task.size);
@@ -319,16 +313,23 @@ Solution gather_adaptively(Radiosity& radiosity, const Task& task) {
     gathering.column.seed = options.seed;
     gathering.column.most_rays = 512;
     gathering.interrupted = interruption(task);
-    std::optional<Importance> importance;
-    if (!task.focus.empty()) importance = find_importance(radiosity, task.focus, options.seed);
-    gathering.importance = demand.importance = importance ? &*importance : nullptr;
+    gathering.importance = demand.importance;
     Gathering solver(radiosity, gathering);
-    run_adaptively(solver, radiosity, task, demand, nullptr);
-    Solution out = gathered(solver, radiosity, task, demand);
-    out.counters["rays"] = static_cast<double>(solver.rays());
-    out.counters["shots"] = 0;
-    out.counters["bytes"] = static_cast<double>(solver.bytes());
-    return out;
+    Snapshots snapshots = task.snapshots;
+    if (resumption && snapshots.wanted)  // shown until there is light everywhere again
+        snapshots.wanted = [&](const Progress& progress) {
+            return solver.has_light() && task.snapshots.wanted(progress);
+        };
+    const Task shown{options,      task.size, task.stop, task.clock,
+                     task.observe, snapshots, task.focus};
+    run_adaptively(solver, radiosity, shown, demand, nullptr);
+    std::optional<Solution> better = gathered(solver, radiosity, task, demand);
+    if (!better) return std::move(resumption->from);
+    if (resumption) resumption->outcome = Resumption::Outcome::improved;
+    better->counters["rays"] = static_cast<double>(solver.rays());
+    better->counters["shots"] = 0;
+    better->counters["bytes"] = static_cast<double>(solver.bytes());
+    return std::move(*better);
 }
 
 Solution solve_by_elements(Radiosity& radiosity, const Task& task) {
@@ -353,9 +354,10 @@ Solution solve_by_elements(Radiosity& radiosity, const Task& task) {
 }  // namespace
 
 Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe,
-               const Cancel* cancel, const Snapshots& snapshots) {
+               const Cancel* cancel, const Snapshots& snapshots, Resumption* resumption) {
     require_polygons(scene);
     require_possible(options);
+    if (resumption) require_resumable(options);
     const Focus focus = focus_of(scene, options);
     const tbb::global_control threads(
         tbb::global_control::max_allowed_parallelism,
@@ -363,17 +365,19 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
                             : static_cast<std::size_t>(tbb::info::default_concurrency()));
     const Stopwatch clock;
     const double size = extent(scene);
-    Radiosity radiosity(scene, make_groups(scene, grouping_of(options.groups)),
-                        mesh_options(options, size));
+    const LightGroups groups = make_groups(scene, grouping_of(options.groups));
+    if (resumption) require_same_light(resumption->from, scene, groups.groups);
+    Radiosity radiosity(scene, groups, mesh_options(options, size));
     if (const auto longest = element_size(options, size)) divide_evenly(radiosity, *longest);
     const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
                     clock,   observe, snapshots,
                     focus};
     Solution solution = solver_of(options) == adaptive_gathering
-                            ? gather_adaptively(radiosity, task)
+                            ? gather_adaptively(radiosity, task, resumption)
                         : by_elements(options) ? solve_by_elements(radiosity, task)
                                                : shoot_adaptively(radiosity, task);
-    if (!focus.empty()) solution.refined_for = RefinedFor{options.view, options.grid};
+    if (resumption && resumption->outcome != Resumption::Outcome::improved) return solution;
+    solution.refined_for = refined_for(task);
     if (!solution.error) solution.error = estimate_error(solution, options.seed, options.error);
     solution.options = used(options);
     return solution;

@@ -24,9 +24,23 @@ struct Snapshots {
     std::function<bool(const Progress&)> wanted{};
 };
 
+/// A solution to go on from, and what came of it.
+struct Resumption {
+    Solution from;  ///< moved away if it is what is returned
+    enum class Outcome {
+        improved,
+        kept,       ///< nothing better was found in the time there was
+        sufficient  ///< it had the error asked for
+    };
+    Outcome outcome = Outcome::improved;
+};
+
 /// Lights the scene. `observe` is called from the calling thread between shots; when `cancel` is
-/// requested the solution so far is returned. Throws Error for unusable options or scenes.
+/// requested the solution so far is returned. With a `resumption` it begins with the mesh of that
+/// solution, which counts as the solution so far. Throws Error for unusable options or scenes, and
+/// for a solution of another scene or other light groups.
 Solution light(const Scene& scene, const SolveOptions& options, const Observer& observe = {},
-               const Cancel* cancel = nullptr, const Snapshots& snapshots = {});
+               const Cancel* cancel = nullptr, const Snapshots& snapshots = {},
+               Resumption* resumption = nullptr);
 
 }  // namespace exitance

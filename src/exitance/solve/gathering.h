@@ -48,6 +48,8 @@ class Gathering final : public Solver {
 
     /// To be called where run() ended early: vertices that wait for a gather are interpolated.
     void finish();
+    /// Whether the vertices have complete light.
+    bool has_light() const { return indirect_.has_value(); }
     /// Begins again on the mesh that there is, for a smaller error.
     void demand(double error, double min_area);
     std::uint64_t rays() const { return rays_; }

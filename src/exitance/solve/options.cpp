@@ -204,4 +204,10 @@ void require_possible(const SolveOptions& o) {
                "--solver shooting");
 }
 
+void require_resumable(const SolveOptions& o) {
+    if (solver_of(o) == adaptive_gathering) return;
+    refuse("--resume cannot be had with --solver " + solver_of(o) +
+           ": what is still to be distributed is not in a file; expected --solver gathering");
+}
+
 }  // namespace exitance

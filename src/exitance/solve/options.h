@@ -52,4 +52,7 @@ bool of_elements(const std::string& option);
 /// Throws Error(wrong_use) for options that cannot be had together, and says why.
 void require_possible(const SolveOptions& options);
 
+/// The same unless the solver can go on from a solution (--resume).
+void require_resumable(const SolveOptions& options);
+
 }  // namespace exitance
