@@ -175,7 +175,7 @@ TEST(Gathering, CancelledBeforeItBegins) {
 
 TEST(Gathering, InterruptedOnTheWayToLessErrorItKeepsTheBest) {
     SolveOptions options = gathering(0.01);
-    options.min_area = 0.5;  // takes more than one demand
+    options.min_area = 0.05;  // takes more than one demand
     Cancel cancel;
     std::optional<double> known;
     int after = 0;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "exitance/run/random.h"
 #include "exitance/solve/place_on_face.h"
 #include "exitance/solve/refine.h"
 
@@ -25,6 +24,12 @@ constexpr float most_noisy = 1.5f;
 // patch (reflected_light.cpp), and points closer to one see its edges.
 constexpr int most_levels = 4;
 constexpr std::size_t batch_size = 4096;
+
+// Key of the directions of rays, the same all over a smooth surface: what they miss by then differs
+// little from one vertex to the next, where noise of its own in each would be seen as blotches.
+std::uint32_t directions_of(const Face& face) {
+    return face.smooth;
+}
 
 }  // namespace
 
@@ -211,7 +216,7 @@ bool IndirectLight::gather_corners(const std::vector<ElementId>& elements) {
                     continue;
                 listed[v.index()] = 1;
                 receivers.add(Vec3(all.point(v.index())), Vec3(all.normal(v.index())),
-                              all.key[v.index()]);
+                              directions_of(mesh[mesh[v].face]));
                 fresh.push_back(v);
                 rays.push_back(rays_for(element));
                 deviation.push_back(source_.deviation(element.patch, rays.back()));
@@ -282,8 +287,7 @@ IndirectLight::Tests IndirectLight::tests_of(const std::vector<ElementId>& eleme
             out.expected.push_back(expected);
             if (!fresh) continue;
             out.points.add(mesh.sample_point(element, u, v) - radiosity_.caster.middle(),
-                           mesh.normal(mesh[face], u, v),
-                           static_cast<std::uint32_t>(hash_bits(0x7e57, face.value, u, v)));
+                           mesh.normal(mesh[face], u, v), directions_of(mesh[face]));
             const std::uint32_t rays = rays_for(element);
             out.at.push_back({face, {u, v}, rays, source_.deviation(element.patch, rays)});
         }

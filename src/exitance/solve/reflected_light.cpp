@@ -67,6 +67,7 @@ ReflectedLight::ReflectedLight(Radiosity& radiosity, const ReflectedLightOptions
       options_(options),
       scene_{radiosity.mesh, radiosity.caster, radiosity.owners, radiosity.two_sided()},
       rows_(patch_rows(radiosity)),
+      slopes_(radiosity.mesh, rows_.area),
       caster_(scene_, rows_, balance_rays(options.error), hash_bits(options.seed, 1)) {
     divide_into_cells();
     balance();
@@ -140,6 +141,7 @@ void ReflectedLight::balance() {
     transport.gather(R, irradiance_);
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t c = 0; c < stride; ++c) irradiance_[RowId(i)][c] += not_even[RowId(i)][c];
+    divide_into_cells();
     fill_cells();
 
     // σ² = F R² − (F R)².
@@ -210,6 +212,8 @@ void ReflectedLight::divide_into_cells() {
         double(most_cell_bytes) / double(sizeof(float) * stride * (rows_.size() + 1));
     const double most = std::clamp(std::sqrt(room / 2), 1.0, double(most_steps));
     std::size_t count = 0;
+    std::vector<float> along_s(stride), along_t(stride);
+    cells_.clear();
     for (const ElementId root : rows_.elements) {
         std::uint32_t levels = 0;
         mesh.for_leaves(root, [&](ElementId id) {
@@ -223,6 +227,14 @@ void ReflectedLight::divide_into_cells() {
             if (high - low > uneven * high)
                 levels = std::max<std::uint32_t>(levels, leaf.level + levels_of_uneven);
         });
+        if (irradiance_.rows() > 0) {
+            const PatchId patch = mesh[root].patch;
+            slopes_.find(patch, irradiance_, along_s, along_t);
+            const float rise = std::hypot(radiosity_.columns.luminance(along_s),
+                                          radiosity_.columns.luminance(along_t));
+            if (rise > uneven * radiosity_.columns.luminance(irradiance_[RowId(patch.index())]))
+                levels = std::max(levels, levels_of_uneven);
+        }
         Cells cells;
         cells.first = static_cast<std::uint32_t>(count);
         cells.steps = std::min(std::bit_floor(static_cast<std::uint32_t>(most)), 1u << levels);
@@ -233,7 +245,7 @@ void ReflectedLight::divide_into_cells() {
     exitance_.resize(count * stride);
 }
 
-// R = ρ (D + F R), D and ρ of the leaves, F R of their patch if it is known.
+// R = ρ (D + F R), D and ρ of the leaves, F R of their patch and its neighbours if it is known.
 void ReflectedLight::fill_cells() {
     const Mesh& mesh = radiosity_.mesh;
     const std::size_t stride = radiosity_.columns.stride;
@@ -245,6 +257,9 @@ void ReflectedLight::fill_cells() {
         [&](std::size_t i) {
             const Element& root = mesh[rows_.elements[i]];
             std::vector<float> D(stride), slope_s(stride), slope_t(stride);
+            std::vector<float> along_s(stride), along_t(stride);
+            if (balanced) slopes_.find(PatchId(i), irradiance_, along_s, along_t);
+            const float centre = root.count == 3 ? 1.0f / 3 : 0.5f;
             mesh.for_leaves(rows_.elements[i], [&](ElementId id) {
                 const Element& leaf = mesh[id];
                 const auto shot = radiosity_.shot[id];
@@ -255,12 +270,18 @@ void ReflectedLight::fill_cells() {
                     find_slopes(leaf, slope_s, slope_t);
                 }
                 const auto rho = radiosity_.rho(id);
+                const float x = float(leaf.u - root.u) / float(root.size) - centre;
+                const float y = float(leaf.v - root.v) / float(root.size) - centre;
+                const float size = float(leaf.size) / float(root.size);
+                const float middle = leaf.count == 3 ? 1.0f / 3 : 0.5f;
                 const auto reflected = [&](std::size_t c, float s, float t) {
-                    const float H = balanced ? irradiance_[RowId(i)][c] : 0.0f;
-                    return rho[c] * (D[c] + s * slope_s[c] + t * slope_t[c] + H);
+                    float light = D[c] + s * slope_s[c] + t * slope_t[c];
+                    if (balanced)
+                        light += irradiance_[RowId(i)][c] + (x + size * (s + middle)) * along_s[c] +
+                                 (y + size * (t + middle)) * along_t[c];
+                    return rho[c] * light;
                 };
                 for (std::size_t c = 0; open && c < stride; ++c) shot[c] = reflected(c, 0, 0);
-                const float middle = leaf.count == 3 ? 1.0f / 3 : 0.5f;
                 cells_[i].visit_those_of(leaf, root, [&](std::size_t cell, float s, float t) {
                     area[cell] += leaf.area;
                     for (std::size_t c = 0; open && c < stride; ++c)

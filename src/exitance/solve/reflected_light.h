@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reflected light of a scene as points gather it: R = ρ (D + F R) between patches, F from the
-// stored hits of a few rays each; D, and with it R, as fine as the mesh inside them.
+// stored hits of a few rays each; inside them D, and with it R, as fine as the mesh, and F R
+// linear.
 #pragma once
 
 #include <cstdint>
@@ -9,6 +10,7 @@
 
 #include "exitance/mesh/field.h"
 #include "exitance/solve/cast_light.h"
+#include "exitance/solve/patch_slopes.h"
 #include "exitance/solve/radiosity.h"
 #include "exitance/transport/element_caster.h"
 
@@ -64,6 +66,7 @@ class ReflectedLight {
     ReflectedLightOptions options_;
     ElementScene scene_;
     ElementRows rows_;
+    PatchSlopes slopes_;
     ElementCaster caster_;
     RowField irradiance_;  ///< F R of patches
     std::vector<float>
