@@ -72,13 +72,38 @@ struct Sum {
     std::size_t count = 0;
 };
 
+/// The same of luminance, which is what solutions estimate; bands of one path are noisy together.
+class LuminanceError {
+  public:
+    void add(double here, double there, double noise) {
+        squares_.push_back(std::pow(here - there, 2) - noise * noise);
+        light_ += there;
+    }
+    /// RMS relative to the mean, and its standard error.
+    std::array<double, 2> rms() const {
+        const double n = double(squares_.size()), level = light_ / n;
+        double mean = 0, spread = 0;
+        for (const double s : squares_) mean += s / n;
+        for (const double s : squares_) spread += std::pow(s - mean, 2);
+        const double rms = std::sqrt(std::max(0.0, mean));
+        const double deviation = std::sqrt(spread) / n;  // d√x = dx / 2√x
+        return {rms / level, (rms > 0 ? deviation / (2 * rms) : std::sqrt(deviation)) / level};
+    }
+
+  private:
+    std::vector<double> squares_;
+    double light_ = 0;
+};
+
 nlohmann::ordered_json compare(const std::string& path, std::span<const Place> places,
                                const Truth& truth, std::size_t bands) {
     const Solution solution = read_solution(path);
     const Surfaces surfaces(solution, Backs::black);
     std::vector<double> found(solution.columns());
     std::vector<double> mean(bands, 0.0);
+    const Spectrum weight = luminance_weights(bands);
     Sum all, contact;
+    LuminanceError of_luminance;
     std::size_t missed = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const truth::Receiver& at = places[i].receiver;
@@ -86,7 +111,7 @@ nlohmann::ordered_json compare(const std::string& path, std::span<const Place> p
             ++missed;
             continue;
         }
-        double square = 0, noise = 0, light = 0;
+        double square = 0, noise = 0, light = 0, level_here = 0, level_there = 0, level_noise = 0;
         for (std::size_t b = 0; b < bands; ++b) {
             double here = 0;
             for (std::size_t g = 0; g < solution.groups.size(); ++g)
@@ -96,7 +121,10 @@ nlohmann::ordered_json compare(const std::string& path, std::span<const Place> p
             noise += std::pow(truth.noise[i * bands + b], 2);
             light += there * there;
             mean[b] += there;
+            level_here += weight[b] * here, level_there += weight[b] * there;
+            level_noise += weight[b] * truth.noise[i * bands + b];
         }
+        of_luminance.add(level_here, level_there, level_noise);
         for (Sum* sum : {&all, &contact}) {
             if (sum == &contact && !places[i].contact) continue;
             sum->square += square, sum->noise += noise, sum->light += std::sqrt(light);
@@ -113,7 +141,8 @@ nlohmann::ordered_json compare(const std::string& path, std::span<const Place> p
         {"places", all.count},
         {"missed", missed},
         {"error", std::sqrt(std::max(0.0, (all.square - all.noise) / n)) / level},
-        {"noise", std::sqrt(all.noise / n) / level}};
+        {"noise", std::sqrt(all.noise / n) / level},
+        {"of_luminance", of_luminance.rms()}};
     if (contact.count)
         out["contacts"] = {
             {"texels", contact.count},

@@ -31,6 +31,7 @@ struct HeldOut {
     std::vector<SurfacePlace> places;
     std::vector<double> shown;    ///< of what the point counts: the share that is no echo
     std::vector<double> worth;    ///< that an error has where the point is shown
+    std::vector<double> area;     ///< that the point stands for, relative to others
     double mean_reflectance = 0;  ///< area-weighted, luminance
 };
 
@@ -45,14 +46,41 @@ bool is_of_interest(const Material& material) {
     return luminance(material.reflectance) > 0 || !material.emits();
 }
 
-// Points spread evenly over the area of all that is of interest, or in proportion to what it
-// matters, by systematic sampling.
+// Irradiance (luminance) per vertex, relative to its mean over the surface.
+std::vector<double> relative_light(const Solution& solution) {
+    std::vector<double> out(solution.positions.size()), row(solution.columns());
+    for (std::size_t v = 0; v < out.size(); ++v) {
+        const auto H = solution.irradiance[VertexId(v)];
+        std::copy_n(H.begin(), row.size(), row.begin());
+        out[v] = std::max(0.0, solution.luminance(row));
+    }
+    double flux = 0, area = 0;
+    for (std::size_t t = 0; t < solution.triangles.size(); ++t) {
+        const double here = triangle_area(solution, t);
+        area += here;
+        for (const std::uint32_t v : solution.triangles[t]) flux += here / 3 * out[v];
+    }
+    for (double& light : out) light *= flux > 0 ? area / flux : 0.0;
+    return out;
+}
+
+// Errors are large where there is much light, and where it changes: a few square centimetres below
+// a lamp may have most of a scene's. There points lie closer together.
+double density(std::span<const double> light, const std::array<std::uint32_t, 3>& corners) {
+    const auto [low, high] = std::minmax({light[corners[0]], light[corners[1]], light[corners[2]]});
+    const double mean = (light[corners[0]] + light[corners[1]] + light[corners[2]]) / 3;
+    return 1 + mean + (high - low);
+}
+
+// Points spread by systematic sampling over the area of all that is of interest, in proportion to
+// what errors are to be expected there, and to what they matter.
 HeldOut hold_out(const Solution& solution, std::uint64_t seed,
                  const TriangleImportance* importance) {
     HeldOut out;
+    const std::vector<double> light = relative_light(solution);
     std::vector<double> cumulative;
     std::vector<std::uint32_t> triangles;
-    double total = 0, reflected = 0;
+    double total = 0, all = 0, reflected = 0;
     for (const SolutionPart& part : solution.parts) {
         const double rho = luminance(solution.materials[part.material].reflectance);
         if (!is_of_interest(solution.materials[part.material])) continue;
@@ -62,13 +90,14 @@ HeldOut hold_out(const Solution& solution, std::uint64_t seed,
                 importance ? double(importance->weight[t]) + double(importance->echo[t]) : 1.0;
             const double area = matters * triangle_area(solution, t);
             if (!(area > 0)) continue;
-            total += area, reflected += area * rho;
+            all += area, reflected += area * rho;
+            total += area * density(light, solution.triangles[t]);
             cumulative.push_back(total);
             triangles.push_back(t);
         }
     }
     if (total <= 0) return out;
-    out.mean_reflectance = reflected / total;
+    out.mean_reflectance = reflected / all;
     for (std::size_t i = 0; i < point_count; ++i) {
         const double at = (static_cast<double>(i) + uniform(seed, 3 * i)) / point_count * total;
         const auto k = static_cast<std::size_t>(
@@ -88,6 +117,7 @@ HeldOut hold_out(const Solution& solution, std::uint64_t seed,
         const double weight = importance ? double(importance->weight[t]) : 1.0;
         out.shown.push_back(weight / (weight + echo));
         out.worth.push_back(shown > 0 ? shown : 1.0);
+        out.area.push_back(1 / density(light, corners));
     }
     return out;
 }
@@ -111,12 +141,14 @@ void drop_buried(const Surfaces& surfaces, HeldOut& held) {
         held.points[kept] = held.points[i];
         held.shown[kept] = held.shown[i];
         held.worth[kept] = held.worth[i];
+        held.area[kept] = held.area[i];
         held.places[kept++] = held.places[i];
     }
     held.points.resize(kept);
     held.places.resize(kept);
     held.shown.resize(kept);
     held.worth.resize(kept);
+    held.area.resize(kept);
 }
 
 }  // namespace
@@ -138,17 +170,17 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
 
     const auto level = [&](const double* row) { return solution.luminance({row, columns}); };
     double all_shown = 0;
-    for (const double share : held.shown) all_shown += share;
+    for (std::size_t i = 0; i < n; ++i) all_shown += held.area[i] * held.shown[i];
     if (all_shown <= 0) return std::nullopt;
     double mean = 0, bias = 0, brought = 0, looked_at = 0;
     std::vector<double> squares(n);
     for (std::size_t i = 0; i < n; ++i) {
         surfaces.irradiance(held.places[i], told);
-        const double here = level(told.data()), shown = held.shown[i];
+        const double here = level(told.data()), shown = held.area[i] * held.shown[i];
         const double a = here - level(&first[i * columns]), b = here - level(&second[i * columns]);
         mean += shown * 0.5 * ((here - a) + (here - b)) / all_shown;
         bias += shown * 0.5 * (a + b) / all_shown;
-        brought += (1 - shown) * 0.5 * (a + b) / all_shown;
+        brought += (held.area[i] - shown) * 0.5 * (a + b) / all_shown;
         squares[i] = shown * held.worth[i] * a * b;
         looked_at += shown / held.worth[i];
     }
@@ -156,7 +188,7 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
     double square = 0, spread = 0;
     for (const double s : squares) square += s / looked_at;
     for (std::size_t i = 0; i < n; ++i) {
-        const double expected = held.shown[i] / held.worth[i] * square;
+        const double expected = held.area[i] * held.shown[i] / held.worth[i] * square;
         spread += (squares[i] - expected) * (squares[i] - expected);
     }
     const double repeated =
