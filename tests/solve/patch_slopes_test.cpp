@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "exitance/math/polygon.h"
 #include "scene/small_scenes.h"
 
@@ -58,6 +60,22 @@ TEST(PatchSlopes, WhatIsLinearStaysSoWithinEveryPatch) {
         EXPECT_EQ(count, 3) << "patch " << p;
     }
     EXPECT_EQ(exact + 3, mesh.patches().size());
+}
+
+TEST(PatchSlopes, SliversHaveFiniteOnes) {
+    Scene scene;
+    const auto s = testing::add_surface(scene, "wall", 0.5);
+    testing::add_polygon(scene, s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    testing::add_polygon(scene, s, {{0, 1, 0}, {1, 1, 0}, {0.5, 1.000001, 0}});
+    testing::add_polygon(scene, s, {{1, 0, 0}, {1.000001, 0.3, 0}, {1, 1, 0}});
+    const Mesh mesh(scene, MeshOptions::of_patches(1));
+    const Patches patches = rising(mesh);
+    const PatchSlopes slopes(mesh, patches.area);
+    for (std::size_t p = 0; p < mesh.patches().size(); ++p) {
+        std::vector<float> along_s(patches.values.stride()), along_t(patches.values.stride());
+        slopes.find(PatchId(p), patches.values, along_s, along_t);
+        EXPECT_TRUE(std::isfinite(along_s[0]) && std::isfinite(along_t[0])) << "patch " << p;
+    }
 }
 
 TEST(PatchSlopes, WhatIsBuriedTellsNothing) {

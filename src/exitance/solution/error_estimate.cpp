@@ -184,7 +184,7 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
         squares[i] = shown * held.worth[i] * a * b;
         looked_at += shown / held.worth[i];
     }
-    if (mean <= 0) return std::nullopt;
+    if (!(mean > 0) || !std::isfinite(bias)) return std::nullopt;
     double square = 0, spread = 0;
     for (const double s : squares) square += s / looked_at;
     for (std::size_t i = 0; i < n; ++i) {

@@ -13,7 +13,8 @@ namespace exitance {
 
 namespace {
 
-// Neighbours on one line tell nothing of what happens across it: then that slope is 0.
+// Neighbours on one line tell nothing of what happens across it: then that slope is 0. A share of
+// what they do tell, for those of a sliver lie thousands of its own widths away.
 constexpr float least_evidence = 1e-3f;
 
 struct HashOfSide {
@@ -66,8 +67,10 @@ void PatchSlopes::find(PatchId patch, const RowField& values, std::span<float> s
     std::fill(t.begin(), t.end(), 0.0f);
     const std::span beside(beside_[patch.index()].data(), count_[patch.index()]);
     if (beside.empty()) return;
-    float ss = least_evidence, st = 0, tt = least_evidence;
+    float ss = 0, st = 0, tt = 0;
     for (const Neighbour& n : beside) ss += n.s * n.s, st += n.s * n.t, tt += n.t * n.t;
+    const float least = least_evidence * (ss + tt);
+    ss += least, tt += least;
     const float det = ss * tt - st * st;
     const auto here = values[RowId(patch.index())];
     // From the middle to the farthest corner, along one side.
