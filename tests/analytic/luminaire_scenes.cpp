@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "analytic/configuration_factors.h"
+#include "analytic/square_over_floor.h"
 #include "scene/lamps.h"
 #include "scene/small_scenes.h"
 
@@ -22,11 +22,13 @@ Case lamp_over_a_floor() {
     c.name = "cosine_lamp";
     testing::add_square(c.scene, testing::add_surface(c.scene, "floor", 0.5), -3, -3, 0, 6);
     c.scene.luminaires.push_back(hanging(cosine_photometry(1000), {0, 0, 3}));
+    c.exact = [](const Vec3& at, const Vec3&) {
+        const double r2 = at.x * at.x + at.y * at.y + 9;
+        return Spectrum(3, 9000 / (r2 * r2));
+    };
     for (const auto& [x, y] :
-         std::array<std::array<double, 2>, 4>{{{0, 0}, {1.5, 1.5}, {-2.2, 0.4}, {2.9, -2.9}}}) {
-        const double square = x * x + y * y + 9;
-        c.probes.push_back({{x, y, 0}, {0, 0, 1}, Spectrum(3, 9000 / (square * square))});
-    }
+         std::array<std::array<double, 2>, 4>{{{0, 0}, {1.5, 1.5}, {-2.2, 0.4}, {2.9, -2.9}}})
+        c.add_probe({x, y, 0}, {0, 0, 1});
     c.why =
         "I = 1000 cd cosθ 3 m up: E = I cosθ / r²; 111.111 lx below, 49.383 lx 1.5 m aside; "
         "1 % for interpolation";
@@ -38,16 +40,20 @@ Case point_over_a_square() {
     Case c;
     c.name = "shadow_of_a_point";
     testing::add_square(c.scene, testing::add_surface(c.scene, "floor", 0.5), -3, -3, 0, 6);
-    const auto square = testing::add_surface(c.scene, "square", 0);
-    c.scene.materials[c.scene.surfaces[square].material].two_sided = true;
-    testing::add_square(c.scene, square, -0.4, -0.4, 1, 0.8);
+    add_black_square(c.scene);
     c.scene.luminaires.push_back(hanging(cosine_photometry(500), {0, 0, 2}));
-    for (const auto& [x, y] : std::array<std::array<double, 2>, 6>{
-             {{0, 0}, {0.7, 0.7}, {0.9, 0}, {0.1, -0.92}, {-1.5, 0.3}, {2, 2}}}) {
+    const auto from = [](double height, double x, double y) {
+        const double r2 = x * x + y * y + height * height;
+        return 500 * height * height / (r2 * r2);
+    };
+    const auto floor = [from](double x, double y) {
         const bool hidden = std::max(std::abs(x), std::abs(y)) < 0.8;
-        const double r2 = x * x + y * y + 4;
-        c.probes.push_back({{x, y, 0}, {0, 0, 1}, Spectrum(3, hidden ? 0.0 : 500 * 4 / (r2 * r2))});
-    }
+        return hidden ? 0.0 : from(2, x, y);
+    };
+    c.exact = around_the_square(floor, [from](double x, double y) { return from(1, x, y); });
+    for (const auto& [x, y] : std::array<std::array<double, 2>, 6>{
+             {{0, 0}, {0.7, 0.7}, {0.9, 0}, {0.1, -0.92}, {-1.5, 0.3}, {2, 2}}})
+        c.add_probe({x, y, 0}, {0, 0, 1});
     c.imbalance = 3e-3;
     c.even_element_size = 0.11;  // about the way from the edge to the nearest probe
     c.why =
@@ -56,24 +62,18 @@ Case point_over_a_square() {
 }
 
 Case panel_over_a_square() {
-    // The occluded square of scenes.cpp with the lamp as an opening of intensity M A cosθ / π.
+    // The occluded square of plate_scenes.cpp, its lamp an opening of intensity M A cosθ / π.
     Case c;
     c.name = "shadow_of_a_panel";
-    const auto square = testing::add_surface(c.scene, "square", 0);
-    c.scene.materials[c.scene.surfaces[square].material].two_sided = true;
-    testing::add_square(c.scene, square, -0.4, -0.4, 1, 0.8);
+    add_black_square(c.scene);
     testing::add_square(c.scene, testing::add_surface(c.scene, "floor", 0.5), -3, -3, 0, 6);
     const auto opening = testing::opening(LuminousOpening::Shape::box, {2, 2, 0});
     c.scene.luminaires.push_back(
         hanging(cosine_photometry(100 * 4 / std::numbers::pi, opening), {0, 0, 2}));
+    c.exact = square_under_a_panel();
     for (const auto& [x, y] : std::array<std::array<double, 2>, 7>{
-             {{0, 0}, {0.3, 0.1}, {0.7, 0}, {1.2, 0.9}, {1.7, 0.2}, {2.4, 2.4}, {-1, 0.5}}}) {
-        const double x0 = std::clamp(-0.8 - x, -1.0, 1.0), x1 = std::clamp(0.8 - x, -1.0, 1.0);
-        const double y0 = std::clamp(-0.8 - y, -1.0, 1.0), y1 = std::clamp(0.8 - y, -1.0, 1.0);
-        const double whole = parallel_rectangle(-1 - x, 1 - x, -1 - y, 1 - y, 2);
-        const double hidden = parallel_rectangle(x0 - x, x1 - x, y0 - y, y1 - y, 2);
-        c.probes.push_back({{x, y, 0}, {0, 0, 1}, Spectrum(3, 100 * (whole - hidden))});
-    }
+             {{0, 0}, {0.3, 0.1}, {0.7, 0}, {1.2, 0.9}, {1.7, 0.2}, {2.4, 2.4}, {-1, 0.5}}})
+        c.add_probe({x, y, 0}, {0, 0, 1});
     c.tolerance = 0.02;
     c.imbalance = 3e-3;
     c.why =

@@ -2,6 +2,7 @@
 #include "exitance/solution/error_estimate.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <vector>
@@ -15,8 +16,13 @@ namespace exitance {
 
 namespace {
 
-// Enough for a relative standard error of the estimate near a tenth.
-constexpr std::size_t point_count = 512;
+// There are more where these leave open whether the error is below the one looked for, or, if it is
+// not, by how much.
+constexpr std::size_t point_count = 640, most_points = 4 * point_count;
+constexpr double well_known = 0.1;
+
+// Of the points: how many are spread by light, and not by the square of its change.
+constexpr double spread_by_light = 0.75;
 
 // A gather of 512 rays misses by half a percent or so, and by n^-3/4 of that; it may miss by as
 // much as the error that is looked for, whose square is averaged over hundreds of points.
@@ -26,13 +32,23 @@ GatherOptions rays_to_tell(double about) {
     return {std::bit_ceil(hemisphere), std::max(64u, std::bit_ceil(hemisphere) / 2), 0};
 }
 
+/// How points are spread over the triangles that are of interest: `cumulative` is their share.
+struct Spread {
+    std::vector<std::uint32_t> triangles;
+    std::vector<double> cumulative;
+    std::vector<double> stands;   ///< what a point there stands for, against the mean of all
+    double mean_reflectance = 0;  ///< area-weighted, luminance
+};
+
+/// Points, and what was found there.
 struct HeldOut {
     std::vector<GatherPoint> points;
     std::vector<SurfacePlace> places;
-    std::vector<double> shown;    ///< of what the point counts: the share that is no echo
-    std::vector<double> worth;    ///< that an error has where the point is shown
-    std::vector<double> area;     ///< that the point stands for, relative to others
-    double mean_reflectance = 0;  ///< area-weighted, luminance
+    std::vector<double> stands;  ///< what a point stands for, against the mean of all
+    std::vector<double> shown;   ///< of what the point counts: the share that is no echo
+    std::vector<double> worth;   ///< that an error has where the point is shown
+    std::vector<double> light;   ///< luminance of irradiance that the surface says
+    std::vector<std::array<double, 2>> off;  ///< by how much that is above either gather
 };
 
 double triangle_area(const Solution& solution, std::size_t t) {
@@ -65,22 +81,14 @@ std::vector<double> relative_light(const Solution& solution) {
 }
 
 // Errors are large where there is much light, and where it changes: a few square centimetres below
-// a lamp may have most of a scene's. There points lie closer together.
-double density(std::span<const double> light, const std::array<std::uint32_t, 3>& corners) {
-    const auto [low, high] = std::minmax({light[corners[0]], light[corners[1]], light[corners[2]]});
-    const double mean = (light[corners[0]] + light[corners[1]] + light[corners[2]]) / 3;
-    return 1 + mean + (high - low);
-}
-
-// Points spread by systematic sampling over the area of all that is of interest, in proportion to
-// what errors are to be expected there, and to what they matter.
-HeldOut hold_out(const Solution& solution, std::uint64_t seed,
-                 const TriangleImportance* importance) {
-    HeldOut out;
+// a lamp may have most of a scene's, and so may the shadow line of a point light, a thousandth of
+// the area. Most points are spread over the area (or what it matters) in proportion to light and
+// its change across a triangle, the others to the square of that change.
+Spread spread_over(const Solution& solution, const TriangleImportance* importance) {
+    Spread out;
     const std::vector<double> light = relative_light(solution);
-    std::vector<double> cumulative;
-    std::vector<std::uint32_t> triangles;
-    double total = 0, all = 0, reflected = 0;
+    std::vector<double> areas, bright, uneven;
+    double all_area = 0, all_bright = 0, all_uneven = 0, reflected = 0;
     for (const SolutionPart& part : solution.parts) {
         const double rho = luminance(solution.materials[part.material].reflectance);
         if (!is_of_interest(solution.materials[part.material])) continue;
@@ -90,19 +98,41 @@ HeldOut hold_out(const Solution& solution, std::uint64_t seed,
                 importance ? double(importance->weight[t]) + double(importance->echo[t]) : 1.0;
             const double area = matters * triangle_area(solution, t);
             if (!(area > 0)) continue;
-            all += area, reflected += area * rho;
-            total += area * density(light, solution.triangles[t]);
-            cumulative.push_back(total);
-            triangles.push_back(t);
+            const auto& [a, b, c] = solution.triangles[t];
+            const auto [low, high] = std::minmax({light[a], light[b], light[c]});
+            const double mean = (light[a] + light[b] + light[c]) / 3;
+            areas.push_back(area);
+            bright.push_back(area * (1 + mean + (high - low)));
+            uneven.push_back(area * (high - low) * (high - low));
+            all_area += area, reflected += area * rho;
+            all_bright += bright.back(), all_uneven += uneven.back();
+            out.triangles.push_back(t);
         }
     }
-    if (total <= 0) return out;
-    out.mean_reflectance = reflected / all;
+    if (areas.empty()) return out;
+    out.mean_reflectance = reflected / all_area;
+    double sum = 0;
+    for (std::size_t k = 0; k < areas.size(); ++k) {
+        double share = bright[k] / all_bright;
+        if (all_uneven > 0) share = std::lerp(uneven[k] / all_uneven, share, spread_by_light);
+        out.cumulative.push_back(sum += share);
+        out.stands.push_back(areas[k] / all_area / share);
+    }
+    return out;
+}
+
+// By systematic sampling.
+HeldOut hold_out(const Solution& solution, const Spread& spread, std::uint64_t seed,
+                 const TriangleImportance* importance) {
+    HeldOut out;
+    const auto& cumulative = spread.cumulative;
     for (std::size_t i = 0; i < point_count; ++i) {
-        const double at = (static_cast<double>(i) + uniform(seed, 3 * i)) / point_count * total;
-        const auto k = static_cast<std::size_t>(
+        const double at =
+            (static_cast<double>(i) + uniform(seed, 3 * i)) / point_count * cumulative.back();
+        const auto above = static_cast<std::size_t>(
             std::upper_bound(cumulative.begin(), cumulative.end(), at) - cumulative.begin());
-        const std::uint32_t t = triangles[std::min(k, triangles.size() - 1)];
+        const std::size_t k = std::min(above, cumulative.size() - 1);
+        const std::uint32_t t = spread.triangles[k];
         const auto w = uniform_triangle({uniform(seed, 3 * i + 1), uniform(seed, 3 * i + 2)});
         const auto& corners = solution.triangles[t];
         Vec3 position, normal;
@@ -115,9 +145,9 @@ HeldOut hold_out(const Solution& solution, std::uint64_t seed,
         const double shown = importance ? double(importance->shown[t]) : 1.0;
         const double echo = importance ? double(importance->echo[t]) : 0.0;
         const double weight = importance ? double(importance->weight[t]) : 1.0;
+        out.stands.push_back(spread.stands[k]);
         out.shown.push_back(weight / (weight + echo));
         out.worth.push_back(shown > 0 ? shown : 1.0);
-        out.area.push_back(1 / density(light, corners));
     }
     return out;
 }
@@ -139,48 +169,58 @@ void drop_buried(const Surfaces& surfaces, HeldOut& held) {
     for (std::size_t i = 0; i < exposed.size(); ++i) {
         if (!exposed[i]) continue;
         held.points[kept] = held.points[i];
+        held.stands[kept] = held.stands[i];
         held.shown[kept] = held.shown[i];
         held.worth[kept] = held.worth[i];
-        held.area[kept] = held.area[i];
         held.places[kept++] = held.places[i];
     }
     held.points.resize(kept);
     held.places.resize(kept);
+    held.stands.resize(kept);
     held.shown.resize(kept);
     held.worth.resize(kept);
-    held.area.resize(kept);
 }
 
-}  // namespace
-
-std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint64_t seed,
-                                            double about, const TriangleImportance* importance) {
-    HeldOut held = hold_out(solution, hash_bits(seed, 0xe57u), importance);
-    if (held.points.empty()) return std::nullopt;
-    const Surfaces surfaces(solution, Backs::black);
-    drop_buried(surfaces, held);
+void compare(const Surfaces& surfaces, HeldOut& held, double about, std::uint64_t seed) {
+    const Solution& solution = surfaces.solution();
     const std::size_t columns = solution.columns(), n = held.points.size();
-    if (n == 0) return std::nullopt;
     std::vector<double> first(n * columns), second(n * columns), told(columns);
     GatherOptions options = rays_to_tell(about);
     options.seed = hash_bits(seed, 1);
     gather(surfaces, held.points, first, options);
     options.seed = hash_bits(seed, 2);
     gather(surfaces, held.points, second, options);
-
     const auto level = [&](const double* row) { return solution.luminance({row, columns}); };
+    for (std::size_t i = 0; i < n; ++i) {
+        surfaces.irradiance(held.places[i], told);
+        const double here = level(told.data());
+        held.light.push_back(here);
+        held.off.push_back({here - level(&first[i * columns]), here - level(&second[i * columns])});
+    }
+}
+
+void append(HeldOut& all, const HeldOut& more) {
+    const auto add = [](auto& to, const auto& from) {
+        to.insert(to.end(), from.begin(), from.end());
+    };
+    add(all.stands, more.stands), add(all.shown, more.shown), add(all.worth, more.worth);
+    add(all.light, more.light), add(all.off, more.off);
+}
+
+// `mean_reflectance` 0: what errors bring elsewhere is counted by their echo.
+std::optional<ErrorEstimate> sum_up(const HeldOut& held, double mean_reflectance) {
+    const std::size_t n = held.stands.size();
     double all_shown = 0;
-    for (std::size_t i = 0; i < n; ++i) all_shown += held.area[i] * held.shown[i];
+    for (std::size_t i = 0; i < n; ++i) all_shown += held.stands[i] * held.shown[i];
     if (all_shown <= 0) return std::nullopt;
     double mean = 0, bias = 0, brought = 0, looked_at = 0;
     std::vector<double> squares(n);
     for (std::size_t i = 0; i < n; ++i) {
-        surfaces.irradiance(held.places[i], told);
-        const double here = level(told.data()), shown = held.area[i] * held.shown[i];
-        const double a = here - level(&first[i * columns]), b = here - level(&second[i * columns]);
-        mean += shown * 0.5 * ((here - a) + (here - b)) / all_shown;
+        const auto [a, b] = held.off[i];
+        const double stands = held.stands[i], shown = stands * held.shown[i];
+        mean += shown * (held.light[i] - 0.5 * (a + b)) / all_shown;
         bias += shown * 0.5 * (a + b) / all_shown;
-        brought += (held.area[i] - shown) * 0.5 * (a + b) / all_shown;
+        brought += (stands - shown) * 0.5 * (a + b) / all_shown;
         squares[i] = shown * held.worth[i] * a * b;
         looked_at += shown / held.worth[i];
     }
@@ -188,11 +228,10 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
     double square = 0, spread = 0;
     for (const double s : squares) square += s / looked_at;
     for (std::size_t i = 0; i < n; ++i) {
-        const double expected = held.area[i] * held.shown[i] / held.worth[i] * square;
+        const double expected = held.stands[i] * held.shown[i] / held.worth[i] * square;
         spread += (squares[i] - expected) * (squares[i] - expected);
     }
-    const double repeated =
-        importance ? bias + brought : bias / (1.0 - std::min(held.mean_reflectance, 0.99));
+    const double repeated = (bias + brought) / (1.0 - std::min(mean_reflectance, 0.99));
     const double total = std::max(0.0, square - bias * bias) + repeated * repeated;
     ErrorEstimate out;
     out.points = static_cast<std::uint32_t>(n);
@@ -201,6 +240,28 @@ std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint6
     const double deviation = std::sqrt(spread) / looked_at / (mean * mean);
     out.confidence = out.rms > 0 ? deviation / (2 * out.rms) : std::sqrt(deviation);
     return out;
+}
+
+}  // namespace
+
+std::optional<ErrorEstimate> estimate_error(const Solution& solution, std::uint64_t seed,
+                                            double about, const TriangleImportance* importance) {
+    const Spread spread = spread_over(solution, importance);
+    if (spread.triangles.empty()) return std::nullopt;
+    const Surfaces surfaces(solution, Backs::black);
+    HeldOut all;
+    std::optional<ErrorEstimate> found;
+    for (std::size_t begin = 0; begin < most_points; begin += point_count) {
+        HeldOut held = hold_out(solution, spread, hash_bits(seed, 0xe57u, begin), importance);
+        drop_buried(surfaces, held);
+        compare(surfaces, held, about, hash_bits(seed, begin));
+        append(all, held);
+        found = sum_up(all, importance ? 0.0 : spread.mean_reflectance);
+        if (!found || found->rms + 2 * found->confidence < about) break;
+        const bool missed = found->rms - 2 * found->confidence > about;
+        if (missed && found->confidence < well_known * found->rms) break;
+    }
+    return found;
 }
 
 }  // namespace exitance
