@@ -45,11 +45,14 @@ std::string balance_warning(const Solution& solution) {
     // Where nobody looks light is left as it is.
     if (solution.refined_for) return "";
     if (!(std::abs(off) > tolerable_imbalance(solution))) return "";
+    const auto time = solution.options.find("time");
+    const bool timed = time != solution.options.end() && !time->second.empty();
     return fmt::format(
-        "the light that arrived is {} {} than what was emitted: most often a lamp is very close to "
-        "a surface or inside of one (exitance info names those within 1 mm), where the mesh is too "
-        "coarse for it",
-        human_percent(std::abs(off)), off > 0 ? "less" : "more");
+        "the light that arrived is {} {} than what was emitted: most often {}a lamp is very close "
+        "to a surface or inside of one (exitance info names those within 1 mm), where the mesh is "
+        "too coarse for it",
+        human_percent(std::abs(off)), off > 0 ? "less" : "more",
+        timed ? "there was too little time to divide the mesh, or " : "");
 }
 
 }  // namespace

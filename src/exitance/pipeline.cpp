@@ -319,6 +319,7 @@ Solution gather_adaptively(Radiosity& radiosity, const Task& task, Resumption* r
     gathering.column.seed = options.seed;
     gathering.column.most_rays = 512;
     gathering.interrupted = interruption(task);
+    gathering.sketch = !resumption && (options.time || task.snapshots.wanted);
     gathering.importance = demand.importance;
     Gathering solver(radiosity, gathering);
     Snapshots snapshots = task.snapshots;

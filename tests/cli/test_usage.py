@@ -107,8 +107,14 @@ class FoundByUse(ProgramTest):
 
     def test_the_light_of_a_solve_that_had_no_time_is_unshot(self):
         said = self.succeed("solve", self.write("box.geom", box()), "-o", self.folder / "b.glb",
-                            "--time", "0").stdout
+                            "--solver", "shooting", "--time", "0").stdout
         self.assertIn("100 % unshot; balance off by 0 %", said)
+
+    def test_without_time_light_is_sketched(self):
+        done = self.succeed("solve", self.write("box.geom", box()), "-o", self.folder / "b.glb",
+                            "--time", "0")
+        self.assertIn(" 0 % unshot;", done.stdout)
+        self.assertIn("most often there was too little time to divide the mesh", done.stderr)
 
 
 if __name__ == "__main__":

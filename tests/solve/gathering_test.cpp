@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "exitance/pipeline.h"
 #include "exitance/run/error.h"
 #include "exitance/solve/element_methods.h"
@@ -210,6 +212,33 @@ TEST(Gathering, TimeStopsIt) {
     EXPECT_LT(clock.seconds(), 60) << "a step in progress, balance and extraction are allowed";
     EXPECT_TRUE(all_finite(solution));
     EXPECT_GT(mean_irradiance(solution, 0, 0), 0);
+}
+
+bool same_light(const Solution& a, const Solution& b) {
+    return std::ranges::equal(a.irradiance.values(), b.irradiance.values());
+}
+
+TEST(Gathering, WithoutAnyTimeThereIsCompleteLight) {
+    SolveOptions options = gathering(0.01);
+    options.time = 0;
+    const Solution sketch = light(two_lamp_room(), options);
+    ASSERT_TRUE(sketch.error);
+    EXPECT_LT(sketch.error->rms, 0.5) << "rough, but each patch has what reaches it";
+    // Direct light between the corners of patches a fifth of the room wide is what it errs by.
+    EXPECT_LT(std::abs(sketch.energy.imbalance()), 0.1);
+    options.time.reset();
+    Cancel cancel;
+    cancel.request();
+    EXPECT_TRUE(same_light(light(two_lamp_room(), options, {}, &cancel), sketch))
+        << "nor when it is interrupted at once";
+}
+
+TEST(Gathering, BeginningWithASketchEndsWithTheSame) {
+    SolveOptions options = gathering(0.05);
+    const Solution plain = light(two_lamp_room(), options);
+    options.time = 1e6;
+    const Solution sketched = light(two_lamp_room(), options);
+    EXPECT_TRUE(same_light(plain, sketched));
 }
 
 TEST(Gathering, LessErrorTakesMoreVerticesAndIsFound) {

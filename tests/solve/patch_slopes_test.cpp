@@ -62,12 +62,13 @@ TEST(PatchSlopes, WhatIsLinearStaysSoWithinEveryPatch) {
     EXPECT_EQ(exact + 3, mesh.patches().size());
 }
 
-TEST(PatchSlopes, SliversHaveFiniteOnes) {
+TEST(PatchSlopes, SliversAndTwinsHaveFiniteOnes) {
     Scene scene;
     const auto s = testing::add_surface(scene, "wall", 0.5);
     testing::add_polygon(scene, s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
     testing::add_polygon(scene, s, {{0, 1, 0}, {1, 1, 0}, {0.5, 1.000001, 0}});
     testing::add_polygon(scene, s, {{1, 0, 0}, {1.000001, 0.3, 0}, {1, 1, 0}});
+    testing::add_polygon(scene, s, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});  // once more
     const Mesh mesh(scene, MeshOptions::of_patches(1));
     const Patches patches = rising(mesh);
     const PatchSlopes slopes(mesh, patches.area);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "exitance/solve/cast_emission.h"
 #include "exitance/solve/merge.h"
@@ -19,6 +20,9 @@ constexpr float merge_share = 0.25f;
 // What is looked at is taken to be no darker than this share of the scene's mean; held-out points
 // ask for more where it is.
 constexpr double least_brightness = 0.1;
+
+// Error of a sketch: nothing is asked of it but light everywhere.
+constexpr double roughest = 1;
 
 // Finding the obstacles of a scene takes some microseconds per polygon; where there are more, most
 // are parts of round bodies that stand in each other's way, and rays are needed all the same.
@@ -48,6 +52,7 @@ Gathering::Gathering(Radiosity& radiosity, const GatheringOptions& options)
       obstacles_(obstacles_of(radiosity)),
       direct_(0, radiosity.columns.count),
       mean_irradiance_(radiosity.area() > 0 ? radiosity.emitted_flux() / radiosity.area() : 0.0) {
+    if (options.sketch) phase_ = Phase::sketch;
     if (options.importance) of_direct_light_ = options.importance->of_direct_light();
     if (obstacles_) options_.column.obstacles = &*obstacles_;
 }
@@ -64,6 +69,10 @@ float Gathering::patch_area() const {
 
 bool Gathering::step() {
     switch (phase_) {
+        case Phase::sketch:
+            sketch();
+            phase_ = Phase::direct;
+            return true;
         case Phase::direct:
             light_directly();
             phase_ = Phase::balance;
@@ -92,6 +101,7 @@ bool Gathering::step() {
 }
 
 void Gathering::finish() {
+    if (!indirect_) sketch();
     if (phase_ != Phase::gather) return;
     indirect_->finish();
     rays_ += indirect_->rays();
@@ -101,6 +111,7 @@ void Gathering::finish() {
 
 double Gathering::unshot() const {
     switch (phase_) {
+        case Phase::sketch:
         case Phase::direct:
             return 1.0;
         case Phase::balance:
@@ -129,8 +140,18 @@ std::uint64_t Gathering::cast_direct(const Receivers& receivers, Received& recei
                          received);
 }
 
+// To the end, whatever interrupts: there is nothing better to keep. What it finds of direct light
+// is forgotten, it is too rough to divide elements by.
+void Gathering::sketch() {
+    const double error = std::exchange(options_.error, std::max(roughest, options_.error));
+    complete_direct();
+    radiosity_.emission_shot = true;
+    balance_patches(options_.error, {});
+    options_.error = error;
+}
+
 void Gathering::light_directly() {
-    const bool first = !radiosity_.emission_shot;
+    if (thorough_) rays_ = 0;  // those of a sketch are not what the solution is made of
     direct_.resize_rows(0);
     direct_variance_.clear();
     complete_direct();
@@ -143,7 +164,7 @@ void Gathering::light_directly() {
         refining.tolerance = tolerance();
         refining.area = patch_area();
         refining.min_area = min_area();
-        refining.thorough = first;
+        refining.thorough = std::exchange(thorough_, false);
         refining.shared_noise = true;
         refining.gross = 16;
         refining.importance = of_direct_light_;
@@ -210,10 +231,17 @@ void Gathering::weigh() {
 }
 
 void Gathering::strike_balance() {
+    balance_patches(options_.error, options_.interrupted);
+    // What was cut short lacks light.
+    if (options_.interrupted && options_.interrupted()) balance_patches(roughest, {});
+    weigh();
+    indirect_->set_tolerance(tolerance(), min_area());
+}
+
+void Gathering::balance_patches(double error, const std::function<bool()>& interrupted) {
     radiosity_.irradiance = direct_;
     indirect_.reset();
-    reflected_.emplace(radiosity_, ReflectedLightOptions{options_.error, options_.column.seed,
-                                                         options_.interrupted});
+    reflected_.emplace(radiosity_, ReflectedLightOptions{error, options_.column.seed, interrupted});
     rays_ += reflected_->rays();
     IndirectOptions gathering;
     gathering.area = patch_area();
@@ -222,8 +250,6 @@ void Gathering::strike_balance() {
     gathering.interrupted = options_.interrupted;
     indirect_.emplace(radiosity_, *reflected_, gathering);
     combine();
-    weigh();
-    indirect_->set_tolerance(tolerance(), min_area());
 }
 
 void Gathering::combine() {
@@ -258,7 +284,7 @@ void Gathering::merge() {
 
 Progress Gathering::progress() const {
     Progress out;
-    out.phase = phase_ == Phase::direct    ? "direct"
+    out.phase = phase_ <= Phase::direct    ? "direct"
                 : phase_ == Phase::balance ? "balance"
                                            : "gathering";
     out.fraction_left = unshot();

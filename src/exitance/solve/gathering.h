@@ -26,6 +26,8 @@ struct GatheringOptions {
     double min_area = 1e-4;  ///< elements are not divided below this area [m²]
     bool adaptive = true;
     bool merge = true;  ///< elements that the light does not need
+    /// Begin with complete light that is as rough as it may be: somebody waits for it.
+    bool sketch = false;
     ColumnOptions column{};
     /// If there: the error is aimed at where somebody looks. Outlives the solver.
     const Importance* importance = nullptr;
@@ -37,8 +39,8 @@ class Gathering final : public Solver {
     /// `radiosity` outlives the solver.
     Gathering(Radiosity& radiosity, const GatheringOptions& options);
 
-    /// Direct light and its mesh; the rough balance; then one level of the quadtrees a step. From
-    /// the balance on the vertices have complete light.
+    /// Maybe a sketch; direct light and its mesh; the rough balance; then one level of the
+    /// quadtrees a step. From the sketch or else the balance on the vertices have complete light.
     bool step() override;
     /// Share of the work left, roughly: 1 until there is light.
     double unshot() const override;
@@ -46,7 +48,8 @@ class Gathering final : public Solver {
     double next_shot() const override { return unshot(); }
     Progress progress() const override;
 
-    /// To be called where run() ended early: vertices that wait for a gather are interpolated.
+    /// To be called where run() ended early: vertices that wait for a gather are interpolated; if
+    /// there is no complete light yet, it is sketched.
     void finish();
     /// Whether the vertices have complete light.
     bool has_light() const { return indirect_.has_value(); }
@@ -56,10 +59,12 @@ class Gathering final : public Solver {
     std::size_t bytes() const;
 
   private:
-    enum class Phase { direct, balance, gather, merge, done };
+    enum class Phase { sketch, direct, balance, gather, merge, done };
 
+    void sketch();
     void light_directly();
     void strike_balance();
+    void balance_patches(double error, const std::function<bool()>& interrupted);
     void combine();
     void merge();
     /// Direct light of the vertices that have not got any yet.
@@ -84,6 +89,7 @@ class Gathering final : public Solver {
     double mean_irradiance_ = 0, lit_share_ = 1;
     std::uint64_t rays_ = 0;
     int level_ = 0;
+    bool thorough_ = true;  ///< elements have not been looked at yet
 };
 
 }  // namespace exitance

@@ -72,6 +72,7 @@ void PatchSlopes::find(PatchId patch, const RowField& values, std::span<float> s
     const float least = least_evidence * (ss + tt);
     ss += least, tt += least;
     const float det = ss * tt - st * st;
+    if (!(det > 0)) return;  // all lie in the same place
     const auto here = values[RowId(patch.index())];
     // From the middle to the farthest corner, along one side.
     const float half = mesh_[mesh_[patch].root].count == 3 ? 2.0f / 3 : 0.5f;
