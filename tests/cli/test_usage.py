@@ -114,7 +114,7 @@ class FoundByUse(ProgramTest):
         done = self.succeed("solve", self.write("box.geom", box()), "-o", self.folder / "b.glb",
                             "--time", "0")
         self.assertIn(" 0 % unshot;", done.stdout)
-        self.assertIn("most often there was too little time to divide the mesh", done.stderr)
+        self.assertIn("most often there was too little time to divide the mesh", done.stdout)
 
 
 if __name__ == "__main__":
