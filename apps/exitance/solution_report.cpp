@@ -46,6 +46,8 @@ std::string SolutionReport::text() const {
         out += fmt::format("Refined for {}: rough elsewhere, not view-independent\n",
                            focus_text(*solution_.refined_for));
 
+    if (const std::string memory = memory_text(solution_); !memory.empty())
+        out += fmt::format("Memory: {}\n", memory);
     if (!solution_.cameras.empty()) out += "\n";
     for (const Camera& camera : solution_.cameras) out += fmt::format("Camera {}\n", camera.name);
     for (const SensorGrid& grid : solution_.grids)

@@ -83,6 +83,23 @@ std::string focus_text(const RefinedFor& what) {
     return out;
 }
 
+std::string memory_text(const Solution& solution) {
+    const auto limit = solution.options.find("memory");
+    if (limit == solution.options.end()) return "";
+    const auto counter = [&](const char* name) {
+        const auto found = solution.counters.find(name);
+        return found == solution.counters.end() ? std::nullopt : std::optional(found->second);
+    };
+    std::string out;
+    if (const auto vertices = counter("vertices_by_memory"))
+        out = fmt::format("elements were not divided beyond {} vertices", human_count(*vertices));
+    if (const auto rays = counter("patch_rays_by_memory"))
+        out += fmt::format("{}the balance had {} rays per patch", out.empty() ? "" : ", ",
+                           human_count(*rays));
+    return out.empty() ? out
+                       : fmt::format("{}: --memory {} MB has room for no more", out, limit->second);
+}
+
 std::string error_text(const Solution& solution) {
     const ErrorEstimate& error = *solution.error;
     // Few points with most of the error tell little more than how large it may be.
@@ -107,6 +124,8 @@ std::string summary(const Solution& solution, const std::filesystem::path& file,
     if (solution.refined_for)
         out += fmt::format("  refined for {}: rough elsewhere, not view-independent\n",
                            focus_text(*solution.refined_for));
+    if (const std::string memory = memory_text(solution); !memory.empty())
+        out += fmt::format("  memory  {}\n", memory);
     if (solution.error) out += fmt::format("  error   {}\n", error_text(solution));
     const auto count = [&](const char* name) {
         const auto found = solution.counters.find(name);

@@ -26,6 +26,9 @@ std::string error_text(const Solution& solution);
 /// "what camera 'door' sees and grid 'desks'"
 std::string focus_text(const RefinedFor& what);
 
+/// What --memory has left undone; empty if nothing.
+std::string memory_text(const Solution& solution);
+
 /// The solution in a few lines: size, energy balance, error estimate, work.
 std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds);
 

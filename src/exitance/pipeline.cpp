@@ -115,11 +115,21 @@ Observer with_snapshots(const Observer& observe, const Snapshots& snapshots,
     };
 }
 
-std::map<std::string, std::string> used(SolveOptions options) {
+// In a file: the vertices at which --memory ended the mesh, and the rays of a patch that it left.
+constexpr const char *ended_by_memory = "vertices_by_memory",
+                     *rays_by_memory = "patch_rays_by_memory";
+
+double bytes_of(const Solution& s) {
+    return double(s.positions.size() * (2 * sizeof(Vec3f) + sizeof(TextureCoordinates)) +
+                  s.irradiance.bytes() + s.triangles.size() * sizeof(s.triangles[0]));
+}
+
+std::map<std::string, std::string> used(SolveOptions options, bool memory_ended) {
     options.solver = solver_of(options);
     std::map<std::string, std::string> out;
     for (const Option& option : describe(options)) {
-        if (option.name == "threads") continue;  // the bytes do not depend on it
+        if (option.name == "threads") continue;                  // the bytes do not depend on it
+        if (option.name == "memory" && !memory_ended) continue;  // nor on what is not needed
         const std::string value = option.value_text();
         if (value.empty() && !by_elements(options) && of_elements(option.name)) continue;
         out[option.name] = value;
@@ -195,6 +205,7 @@ struct Task {
     const Observer& observe;
     const Snapshots& snapshots;
     const Focus& focus;
+    const MemoryPlan* memory = nullptr;  ///< if there is a limit
 };
 
 std::optional<RefinedFor> refined_for(const Task& task) {
@@ -285,7 +296,8 @@ bool resume(Resumption& resumption, Radiosity& radiosity, const Task& task, Dema
     for (std::size_t g = 0; g < kept.groups.size(); ++g)
         same_weights = same_weights && kept.groups[g].weight == radiosity.groups.groups[g].weight;
     describe_anew(kept, radiosity);
-    const std::vector<PatchId> patches = take_over_mesh(radiosity, kept);
+    const std::vector<PatchId> patches = take_over_mesh(
+        radiosity, kept, task.memory ? task.memory->most_vertices_of_direct() : SIZE_MAX);
     std::optional<ErrorEstimate> estimate = kept.error;
     if (!same_weights || !is_looked_at(kept, task, demand)) {
         std::optional<TriangleImportance> weights;
@@ -321,20 +333,25 @@ Solution gather_adaptively(Radiosity& radiosity, const Task& task, Resumption* r
     gathering.interrupted = interruption(task);
     gathering.sketch = !resumption && (options.time || task.snapshots.wanted);
     gathering.importance = demand.importance;
+    gathering.memory = task.memory;
     Gathering solver(radiosity, gathering);
+    demand.is_last = [&] { return solver.is_full(); };
     Snapshots snapshots = task.snapshots;
     if (resumption && snapshots.wanted)  // shown until there is light everywhere again
         snapshots.wanted = [&](const Progress& progress) {
             return solver.has_light() && task.snapshots.wanted(progress);
         };
-    const Task shown{options,      task.size, task.stop, task.clock,
-                     task.observe, snapshots, task.focus};
+    const Task shown{options,      task.size, task.stop,  task.clock,
+                     task.observe, snapshots, task.focus, task.memory};
     run_adaptively(solver, radiosity, shown, demand, nullptr);
     std::optional<Solution> better = gathered(solver, radiosity, task, demand);
     if (!better) return std::move(resumption->from);
     if (resumption) resumption->outcome = Resumption::Outcome::improved;
     better->counters["rays"] = static_cast<double>(solver.rays());
     better->counters["shots"] = 0;
+    if (solver.is_full())
+        better->counters[ended_by_memory] = static_cast<double>(radiosity.mesh.vertices().size());
+    if (const auto rays = solver.scarce_patch_rays()) better->counters[rays_by_memory] = *rays;
     better->counters["bytes"] = static_cast<double>(solver.bytes());
     return std::move(*better);
 }
@@ -374,11 +391,22 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     const double size = extent(scene);
     const LightGroups groups = make_groups(scene, grouping_of(options.groups));
     if (resumption) require_same_light(resumption->from, scene, groups.groups);
-    Radiosity radiosity(scene, groups, mesh_options(options, size));
+    const MeshOptions patches = mesh_options(options, size);
+    if (options.memory) require_memory(scene, patches.patch_size, *options.memory * 1e6);
+    Radiosity radiosity(scene, groups, patches);
+    std::optional<MemoryPlan> memory;
+    if (options.memory)
+        memory.emplace(radiosity, *options.memory * 1e6,
+                       resumption ? bytes_of(resumption->from) : 0);
     if (const auto longest = element_size(options, size)) divide_evenly(radiosity, *longest);
-    const Task task{options, size,    {options.unshot, options.time, options.next_shot, cancel},
-                    clock,   observe, snapshots,
-                    focus};
+    const Task task{options,
+                    size,
+                    {options.unshot, options.time, options.next_shot, cancel},
+                    clock,
+                    observe,
+                    snapshots,
+                    focus,
+                    memory ? &*memory : nullptr};
     Solution solution = solver_of(options) == adaptive_gathering
                             ? gather_adaptively(radiosity, task, resumption)
                         : by_elements(options) ? solve_by_elements(radiosity, task)
@@ -386,7 +414,8 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     if (resumption && resumption->outcome != Resumption::Outcome::improved) return solution;
     solution.refined_for = refined_for(task);
     if (!solution.error) solution.error = estimate_error(solution, options.seed, options.error);
-    solution.options = used(options);
+    solution.options = used(options, solution.counters.contains(ended_by_memory) ||
+                                         solution.counters.contains(rays_by_memory));
     return solution;
 }
 

@@ -80,7 +80,7 @@ bool Demand::rise(const SolveOptions& options, const Radiosity& radiosity) {
     Solution now = judged_solution_of(radiosity, options, importance);
     const std::optional<ErrorEstimate> estimate = now.error;
     take_if_better(std::move(now));
-    if (!estimate || met_by(*estimate, options)) return false;
+    if (!estimate || met_by(*estimate, options) || (is_last && is_last())) return false;
     const bool had_begun = error <= options.error;
     if (had_begun && estimate->rms > worthwhile * found) return false;
     if (error <= least * options.error) return false;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -34,8 +35,9 @@ struct Demand {
     /// Of the best that they have looked at, which is `solution`, or what was resumed.
     std::optional<ErrorEstimate> best{};
     std::optional<Solution> solution{};
-    bool is_of_mesh = false;  ///< `solution` is what the mesh stands for now
-    bool risen = false;       ///< more was demanded after they have looked
+    bool is_of_mesh = false;          ///< `solution` is what the mesh stands for now
+    bool risen = false;               ///< more was demanded after they have looked
+    std::function<bool()> is_last{};  ///< asked after each: true = nothing leads any further
 
     /// Looks at what there is. Whether more is demanded now.
     bool rise(const SolveOptions& options, const Radiosity& radiosity);

@@ -192,7 +192,8 @@ void describe_anew(Solution& kept, const Radiosity& radiosity) {
     kept.grids = scene.grids;
 }
 
-std::vector<PatchId> take_over_mesh(Radiosity& radiosity, const Solution& kept) {
+std::vector<PatchId> take_over_mesh(Radiosity& radiosity, const Solution& kept,
+                                    std::size_t most_vertices) {
     Mesh& mesh = radiosity.mesh;
     const std::vector<Cell> cells = cells_of(kept);
     const RayCaster caster = caster_over_patches(mesh);
@@ -206,7 +207,8 @@ std::vector<PatchId> take_over_mesh(Radiosity& radiosity, const Solution& kept) 
                  [&](std::size_t i) { patches[i] = patch_of(cells[i], mesh, caster, reach); });
     for (std::size_t i = 0; i < cells.size(); ++i) {
         std::fill_n(out.begin() + cells[i].triangle, cells[i].count, patches[i]);
-        if (patches[i].valid()) divide(mesh, patches[i], cells[i]);
+        if (patches[i].valid() && mesh.vertices().size() < most_vertices)
+            divide(mesh, patches[i], cells[i]);
     }
     radiosity.admit_new_vertices();
     return out;

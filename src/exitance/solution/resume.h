@@ -2,6 +2,7 @@
 // A solve that goes on from a solution: whether it may, and the mesh that it begins with.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "exitance/solution/solution.h"
@@ -20,7 +21,9 @@ void describe_anew(Solution& kept, const Radiosity& radiosity);
 
 /// Divides the elements of `radiosity`, which nothing has lit yet, until none is more than twice as
 /// large as what stood in its place when `kept` was made into triangles; patches may have another
-/// size than they had then. Returns the patch of every triangle, invalid where there is none.
-std::vector<PatchId> take_over_mesh(Radiosity& radiosity, const Solution& kept);
+/// size than they had then. The mesh does not grow beyond `most_vertices`. Returns the patch of
+/// every triangle, invalid where there is none.
+std::vector<PatchId> take_over_mesh(Radiosity& radiosity, const Solution& kept,
+                                    std::size_t most_vertices = SIZE_MAX);
 
 }  // namespace exitance

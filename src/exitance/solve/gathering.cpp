@@ -87,6 +87,9 @@ bool Gathering::step() {
                 finish();
                 phase_ = options_.merge ? Phase::merge : Phase::done;
             }
+            if (options_.memory &&
+                radiosity_.mesh.vertices().size() >= options_.memory->most_vertices())
+                full_ = true;
             complete_direct();
             combine();
             return true;
@@ -169,9 +172,11 @@ void Gathering::light_directly() {
         refining.gross = 16;
         refining.importance = of_direct_light_;
         refining.interrupted = options_.interrupted;
+        if (options_.memory) refining.most_vertices = options_.memory->most_vertices_of_direct();
         rays_ += refine(radiosity_, refining, [&](const Receivers& points, Received& lit) {
             return cast_direct(points, lit);
         });
+        full_ = radiosity_.mesh.vertices().size() >= refining.most_vertices;
         weigh();
     }
     direct_ = radiosity_.irradiance;
@@ -241,13 +246,21 @@ void Gathering::strike_balance() {
 void Gathering::balance_patches(double error, const std::function<bool()>& interrupted) {
     radiosity_.irradiance = direct_;
     indirect_.reset();
-    reflected_.emplace(radiosity_, ReflectedLightOptions{error, options_.column.seed, interrupted});
+    reflected_.reset();
+    ReflectedLightOptions balancing{error, options_.column.seed, interrupted};
+    if (options_.memory) {
+        balancing.most_rays =
+            options_.memory->patch_rays(balancing.most_rays, radiosity_.mesh.vertices().size());
+        balancing.most_cell_bytes = options_.memory->most_cell_bytes();
+    }
+    reflected_.emplace(radiosity_, balancing);
     rays_ += reflected_->rays();
     IndirectOptions gathering;
     gathering.area = patch_area();
     gathering.adaptive = options_.adaptive;
     if (options_.importance) gathering.shown = options_.importance->shown;
     gathering.interrupted = options_.interrupted;
+    if (options_.memory) gathering.most_vertices = options_.memory->most_vertices();
     indirect_.emplace(radiosity_, *reflected_, gathering);
     combine();
 }
@@ -291,6 +304,11 @@ Progress Gathering::progress() const {
     out.rays = rays_ + (indirect_ && phase_ == Phase::gather ? indirect_->rays() : 0);
     out.vertices = radiosity_.receivers.size();
     return out;
+}
+
+std::optional<std::uint32_t> Gathering::scarce_patch_rays() const {
+    if (!reflected_ || !reflected_->lacks_rays()) return {};
+    return reflected_->patch_rays();
 }
 
 std::size_t Gathering::bytes() const {

@@ -14,6 +14,7 @@
 #include "exitance/solve/cast_light.h"
 #include "exitance/solve/importance.h"
 #include "exitance/solve/indirect.h"
+#include "exitance/solve/memory.h"
 #include "exitance/solve/radiosity.h"
 #include "exitance/solve/reflected_light.h"
 #include "exitance/solve/solver.h"
@@ -32,6 +33,7 @@ struct GatheringOptions {
     /// If there: the error is aimed at where somebody looks. Outlives the solver.
     const Importance* importance = nullptr;
     std::function<bool()> interrupted{};  ///< asked during long steps: true ends them
+    const MemoryPlan* memory = nullptr;   ///< if there: what may be taken. Outlives the solver.
 };
 
 class Gathering final : public Solver {
@@ -57,6 +59,10 @@ class Gathering final : public Solver {
     void demand(double error, double min_area);
     std::uint64_t rays() const { return rays_; }
     std::size_t bytes() const;
+    /// Whether elements stay undivided since memory has ended.
+    bool is_full() const { return full_; }
+    /// Of each patch in the last balance, if there was no memory for more.
+    std::optional<std::uint32_t> scarce_patch_rays() const;
 
   private:
     enum class Phase { sketch, direct, balance, gather, merge, done };
@@ -90,6 +96,7 @@ class Gathering final : public Solver {
     std::uint64_t rays_ = 0;
     int level_ = 0;
     bool thorough_ = true;  ///< elements have not been looked at yet
+    bool full_ = false;
 };
 
 }  // namespace exitance

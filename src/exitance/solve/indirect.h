@@ -3,6 +3,7 @@
 // good enough.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -19,6 +20,7 @@ struct IndirectOptions {
     float area = 1;        ///< [m²]; smaller elements may be wrong by more
     float min_area = 0;    ///< elements below this area stay [m²]
     bool adaptive = true;  ///< elements may be divided
+    std::size_t most_vertices = SIZE_MAX;  ///< the mesh is not divided beyond these
     /// Per patch: what the tolerance is divided by, 0 = the patch keeps its light on average;
     /// empty: all alike.
     std::span<const float> shown{};

@@ -29,6 +29,7 @@ void IndirectLight::divide(const std::vector<ElementId>& elements) {
     std::vector<ElementId> divided;
     for (const ElementId id : elements) {
         if (!mesh[id].leaf() || !may_be_divided(mesh[id])) continue;
+        if (mesh.vertices().size() >= options_.most_vertices) break;
         const auto done = mesh.split(id);
         divided.insert(divided.end(), done.begin(), done.end());
     }

@@ -32,6 +32,10 @@ Options describe(SolveOptions& o) {
         {"grid", &o.grid,
          "the same for the sensors of this grid of the scene, alone or besides --view"},
         {"time", &o.time, "stop after this long and keep the best solution so far", "s", 0},
+        {"memory", &o.memory,
+         "most memory that the whole process takes, by count: elements are not divided further "
+         "where it ends, which the summary says; for gathering",
+         "MB", 1, 1e9},
         {"solver", &o.solver,
          "how the system is solved: gathering = a rough balance on stored ray hits and one "
          "gathering step where light needs it, shooting = progressive refinement; both divide "
@@ -146,6 +150,14 @@ void require_focus_possible(const SolveOptions& o) {
            ", which refines for all places alike; expected --solver gathering");
 }
 
+// Others hold what they need at once.
+void require_memory_possible(const SolveOptions& o) {
+    if (!o.memory || solver_of(o) == adaptive_gathering) return;
+    refuse("--memory cannot be had with --solver " + solver_of(o) +
+           ", which cannot do with less than its elements and form factors take; expected "
+           "--solver gathering");
+}
+
 // Of the solvers that divide elements as light needs it.
 void require_adaptive(const SolveOptions& o) {
     const std::string solver = solver_of(o), with = " cannot be had with --solver " + solver;
@@ -175,6 +187,7 @@ void require_adaptive(const SolveOptions& o) {
 
 void require_possible(const SolveOptions& o) {
     require_focus_possible(o);
+    require_memory_possible(o);
     if (!by_elements(o)) return require_adaptive(o);
     const std::string solver = solver_of(o), with = " cannot be had with --solver " + solver;
     const bool links = o.transport == "links";

@@ -15,6 +15,7 @@ struct SolveOptions {
     std::optional<std::string> view;
     std::optional<std::string> grid;
     std::optional<double> time;
+    std::optional<double> memory;
     std::optional<std::string> solver;  ///< by default as solver_of() says
     std::optional<std::string> transport;
     std::optional<std::string> factors;

@@ -59,6 +59,7 @@ class Refinement {
             for (const ElementId id : batch)
                 if (fails(id)) to_split.push_back(id);
             const std::vector<ElementId> children = split(to_split);
+            if (radiosity_.mesh.vertices().size() >= options_.most_vertices) break;
             open.insert(open.end(), children.begin(), children.end());
         }
         return rays_;
@@ -219,6 +220,7 @@ class Refinement {
         std::vector<ElementId> done;
         for (const ElementId id : elements) {
             if (!mesh[id].leaf()) continue;  // a neighbour's split took it along
+            if (mesh.vertices().size() >= options_.most_vertices) break;
             const auto also = mesh.split(id);
             done.insert(done.end(), also.begin(), also.end());
         }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>
@@ -29,7 +30,8 @@ struct RefineOptions {
     float gross = INFINITY;
     /// Per patch: what the tolerance is divided by, 0 = the patch stays as it is; empty: all alike.
     std::span<const float> importance{};
-    std::function<bool()> interrupted{};  ///< true: the mesh stays as it is so far
+    std::size_t most_vertices = SIZE_MAX;  ///< the mesh is not divided beyond these
+    std::function<bool()> interrupted{};   ///< true: the mesh stays as it is so far
 };
 
 /// What counts is the sum over elements of error² × area: each may contribute the same, so one of

@@ -30,8 +30,6 @@ constexpr std::uint32_t most_steps = 8;
 // A leaf is uneven if the light of its corners differs by this share; it is divided so often.
 constexpr float uneven = 0.05f;
 constexpr std::uint32_t levels_of_uneven = 2;
-// Where rows are long, for many groups of light, cells take no more than this.
-constexpr std::size_t most_cell_bytes = std::size_t{256} << 20;
 
 // n stratified rays that meet exitances with standard deviation σ miss their mean by
 // about 1.2 σ n^-3/4 (measured in rooms from 64 to 1024 rays).
@@ -68,9 +66,14 @@ ReflectedLight::ReflectedLight(Radiosity& radiosity, const ReflectedLightOptions
       scene_{radiosity.mesh, radiosity.caster, radiosity.owners, radiosity.two_sided()},
       rows_(patch_rows(radiosity)),
       slopes_(radiosity.mesh, rows_.area),
-      caster_(scene_, rows_, balance_rays(options.error), hash_bits(options.seed, 1)) {
+      caster_(scene_, rows_, std::min(balance_rays(options.error), options.most_rays),
+              hash_bits(options.seed, 1)) {
     divide_into_cells();
     balance();
+}
+
+bool ReflectedLight::lacks_rays() const {
+    return options_.most_rays < balance_rays(options_.error);
 }
 
 // R = ρ (D + F R) on the patches, as exchange areas in a sparse matrix.
@@ -209,7 +212,7 @@ void ReflectedLight::divide_into_cells() {
     const Mesh& mesh = radiosity_.mesh;
     const std::size_t stride = radiosity_.columns.stride;
     const double room =
-        double(most_cell_bytes) / double(sizeof(float) * stride * (rows_.size() + 1));
+        double(options_.most_cell_bytes) / double(sizeof(float) * stride * (rows_.size() + 1));
     const double most = std::clamp(std::sqrt(room / 2), 1.0, double(most_steps));
     std::size_t count = 0;
     std::vector<float> along_s(stride), along_t(stride);

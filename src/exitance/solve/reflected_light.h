@@ -20,6 +20,9 @@ struct ReflectedLightOptions {
     double error = 0.02;  ///< RMS error of irradiance relative to its mean that is aimed at
     std::uint64_t seed = 0;
     std::function<bool()> interrupted{};
+    std::uint32_t most_rays = 1024;  ///< of a patch in the balance
+    /// R in cells takes no more than this; where rows are long, for many groups of light, it may.
+    std::size_t most_cell_bytes = std::size_t{256} << 20;
 };
 
 /// What a point sees beside light.
@@ -53,6 +56,9 @@ class ReflectedLight {
                          Received& received, std::span<Surroundings> around) const;
 
     std::uint64_t rays() const { return rays_; }
+    /// Cast from each patch for the balance, and whether the error asked for more of them.
+    std::uint32_t patch_rays() const { return caster_.rays(); }
+    bool lacks_rays() const;
     std::size_t bytes() const;
 
   private:
