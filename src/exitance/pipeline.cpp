@@ -124,12 +124,28 @@ double bytes_of(const Solution& s) {
                   s.irradiance.bytes() + s.triangles.size() * sizeof(s.triangles[0]));
 }
 
-std::map<std::string, std::string> used(SolveOptions options, bool memory_ended) {
+bool memory_ended(const Solution& solution) {
+    return solution.counters.contains(ended_by_memory) ||
+           solution.counters.contains(rays_by_memory);
+}
+
+double bytes_of_memory(const SolveOptions& options) {
+    return options.memory.value_or(0) * 1e6;
+}
+
+std::optional<MemoryPlan> memory_plan(const SolveOptions& options, const Radiosity& radiosity,
+                                      const Resumption* resumption) {
+    if (!options.memory) return std::nullopt;
+    return MemoryPlan(radiosity, bytes_of_memory(options),
+                      resumption ? bytes_of(resumption->from) : 0);
+}
+
+std::map<std::string, std::string> used(SolveOptions options, bool ended) {
     options.solver = solver_of(options);
     std::map<std::string, std::string> out;
     for (const Option& option : describe(options)) {
-        if (option.name == "threads") continue;                  // the bytes do not depend on it
-        if (option.name == "memory" && !memory_ended) continue;  // nor on what is not needed
+        if (option.name == "threads") continue;           // the bytes do not depend on it
+        if (option.name == "memory" && !ended) continue;  // nor on what is not needed
         const std::string value = option.value_text();
         if (value.empty() && !by_elements(options) && of_elements(option.name)) continue;
         out[option.name] = value;
@@ -392,12 +408,9 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     const LightGroups groups = make_groups(scene, grouping_of(options.groups));
     if (resumption) require_same_light(resumption->from, scene, groups.groups);
     const MeshOptions patches = mesh_options(options, size);
-    if (options.memory) require_memory(scene, patches.patch_size, *options.memory * 1e6);
+    if (options.memory) require_memory(scene, patches.patch_size, bytes_of_memory(options));
     Radiosity radiosity(scene, groups, patches);
-    std::optional<MemoryPlan> memory;
-    if (options.memory)
-        memory.emplace(radiosity, *options.memory * 1e6,
-                       resumption ? bytes_of(resumption->from) : 0);
+    const auto memory = memory_plan(options, radiosity, resumption);
     if (const auto longest = element_size(options, size)) divide_evenly(radiosity, *longest);
     const Task task{options,
                     size,
@@ -414,8 +427,7 @@ Solution light(const Scene& scene, const SolveOptions& options, const Observer& 
     if (resumption && resumption->outcome != Resumption::Outcome::improved) return solution;
     solution.refined_for = refined_for(task);
     if (!solution.error) solution.error = estimate_error(solution, options.seed, options.error);
-    solution.options = used(options, solution.counters.contains(ended_by_memory) ||
-                                         solution.counters.contains(rays_by_memory));
+    solution.options = used(options, memory_ended(solution));
     return solution;
 }
 

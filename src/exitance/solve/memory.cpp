@@ -20,8 +20,9 @@ constexpr double program = 32e6, unused = 1.1;
 constexpr double tree_bytes = 150;
 // A polygon as it was read; its sides with their edges while the mesh is made; what a patch adds.
 constexpr double polygon_bytes = 120, face_bytes = 1000, patch_bytes = 400;
-// A patch as a row; while the balance is struck, its lists of hits and its fields, too.
-constexpr double row_bytes = 24, balance_bytes = 250, balance_fields = 5;
+// A patch as a row with its neighbours; while the balance is struck, its lists of hits and its
+// fields, too.
+constexpr double row_bytes = 80, balance_bytes = 250, balance_fields = 5;
 // Whom a ray of a patch met: listed by either patch, added up, and in a matrix from both sides.
 constexpr double hit_bytes = 20;
 constexpr std::uint32_t fewest_patch_rays = 16;

@@ -85,7 +85,9 @@ void PatchSlopes::find(PatchId patch, const RowField& values, std::span<float> s
         s[c] = (along_s * tt - along_t * st) / det;
         t[c] = (along_t * ss - along_s * st) / det;
         const float most = half * (std::abs(s[c]) + std::abs(t[c]));
-        if (most > here[c]) s[c] *= here[c] / most, t[c] *= here[c] / most;
+        // What a rough mesh extrapolates may be below nothing already.
+        const float room = std::max(here[c], 0.0f);
+        if (most > room) s[c] *= room / most, t[c] *= room / most;
     }
 }
 
