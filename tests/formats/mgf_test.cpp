@@ -82,6 +82,13 @@ TEST(Mgf, ASquare) {
     EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(Mgf, UpIsZUnlessMoreLiesLevelAcrossY) {
+    EXPECT_EQ(parse(square + "f a b c d\n").up, (Vec3{0, 0, 1}));
+    EXPECT_EQ(parse("xf -rx -90\n" + square + "f a b c d\nxf\n").up, (Vec3{0, 1, 0}));
+    EXPECT_EQ(parse(square + "f a b c d\nxf -rx -90\n" + square + "f a b c d\nxf\n").up,
+              (Vec3{0, 0, 1}));
+}
+
 TEST(Mgf, LinesContinueAndEndAnyWay) {
     const Scene scene = parse(
         "v a =\r\np 0 0 0\r\nv b =\n p \\\n 1 \\\r\n 0 0\nv c =\n p 1 1\\\n\t0\n"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/scene/formats/mgf.h"
 
+#include <cmath>
+
 #include "exitance/scene/closed_bodies.h"
 #include "exitance/scene/formats/lamp_file.h"
 #include "exitance/scene/formats/mgf_reader.h"
@@ -12,6 +14,22 @@ namespace {
 constexpr std::size_t longest_line = 4096;
 constexpr std::size_t any = static_cast<std::size_t>(-1);
 
+// So much more area across y than across z: floors, ceilings and table tops lie there.
+constexpr double clearly = 1.5;
+
+// The format does not say what is up: z by custom, or y where more surface lies level then.
+Vec3 up_of(const Scene& scene) {
+    constexpr double straight = 0.999;
+    double across_y = 0, across_z = 0;
+    for (const Polygon& polygon : scene.polygons) {
+        const Vec3 normal = scene.normal(polygon);
+        const double here = scene.area(polygon);
+        if (std::abs(normal.y) > straight) across_y += here;
+        if (std::abs(normal.z) > straight) across_z += here;
+    }
+    return across_y > clearly * across_z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
+}
+
 }  // namespace
 
 Scene MgfReader::read() {
@@ -22,7 +40,7 @@ Scene MgfReader::read() {
     for (const Material& material : scene_.materials)
         if (material.emits()) scene_.quantity = Quantity::photometric;
     if (!scene_.luminaires.empty()) scene_.quantity = Quantity::photometric;
-    scene_.up = {0, 0, 1};
+    scene_.up = up_of(scene_);
     warnings_.tell(scene_);
     close_bodies(scene_);
     return std::move(scene_);
