@@ -71,9 +71,8 @@ std::string bar_line(const Progress& progress, std::size_t columns) {
     const double rate = progress.seconds > 0 ? double(progress.rays) / progress.seconds : 0;
     const std::string head = fmt::format("{:<10.10} ", progress.phase);
     std::string tail = fmt::format(" {:3.0f} %  ", 100 * done);
-    if (!progress.even)
-        tail += fmt::format("unshot {}  {} shots  ", human_percent(progress.fraction_left),
-                            progress.shots);
+    if (!progress.even) tail += fmt::format("unshot {}  ", human_percent(progress.fraction_left));
+    if (progress.shots > 0) tail += fmt::format("{} shots  ", progress.shots);
     if (!progress.even || progress.rays > 0) tail += fmt::format("{} rays/s  ", human_count(rate));
     if (!progress.even)
         tail += fmt::format("{} vertices  ", human_count(double(progress.vertices)));

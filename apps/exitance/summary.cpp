@@ -15,8 +15,12 @@ namespace exitance::cli {
 namespace {
 
 std::string group_names(const Solution& solution) {
+    constexpr std::size_t most_named = 12;
+    const std::size_t count = solution.groups.size();
+    const std::size_t named = count > most_named ? most_named - 1 : count;
     std::string out;
-    for (const LightGroup& group : solution.groups) out += ", " + group.name;
+    for (std::size_t g = 0; g < named; ++g) out += ", " + solution.groups[g].name;
+    if (named < count) out += fmt::format(" and {} more", count - named);
     return out.substr(2);
 }
 
@@ -127,16 +131,14 @@ std::string summary(const Solution& solution, const std::filesystem::path& file,
     if (const std::string memory = memory_text(solution); !memory.empty())
         out += fmt::format("  memory  {}\n", memory);
     if (solution.error) out += fmt::format("  error   {}\n", error_text(solution));
-    const auto count = [&](const char* name) {
+    const auto things = [&](const char* name, const char* one) -> std::string {
         const auto found = solution.counters.find(name);
-        return human_count(found == solution.counters.end() ? 0 : found->second);
+        if (found == solution.counters.end() || found->second == 0) return {};
+        const std::string number = human_count(found->second);
+        return number + " " + (number == "1" ? one : name) + ", ";
     };
-    const auto things = [&](const char* name, const char* one) {
-        const std::string number = count(name);
-        return number + " " + (number == "1" ? one : name);
-    };
-    out += fmt::format("  work    {}, {}, {:.3g} s\n", things("shots", "shot"),
-                       things("rays", "ray"), seconds);
+    out += fmt::format("  work    {}{}{:.3g} s\n", things("shots", "shot"), things("rays", "ray"),
+                       seconds);
     return out;
 }
 

@@ -32,7 +32,7 @@ class Solve(ProgramTest):
         self.assertRegex(done.stdout, r"box\.glb: \d+ vertices, \d+ triangles, light groups: ")
         self.assertRegex(done.stdout, r"energy .* emitted = .* absorbed .* escaped .* unshot")
         self.assertRegex(done.stdout, r"error .* % ± .* % \(RMS of irradiance")
-        self.assertRegex(done.stdout, r"work .* shots, .* rays, .* s\n")
+        self.assertRegex(done.stdout, r"work +[0-9.]+ [kMG]? ?rays, .* s\n")
         # A lamp of 0.2 m × 0.2 m and 10 per square metre.
         self.assertRegex(done.stdout, r"energy +0\.4 emitted")
         self.assertEqual(os.listdir(self.folder).count("box.glb"), 1)

@@ -4,19 +4,16 @@
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "exitance/solve/cast_light.h"
+#include "exitance/solve/lamps.h"
 #include "exitance/solve/radiosity.h"
 
 namespace exitance {
 
-/// The faces that emit, brightest first.
-std::vector<FaceId> emitters_of(const Radiosity& radiosity);
-
-/// Adds the light of `emitters` and of all that is no polygon to `received`, as cast_light does,
-/// and notes which share of the lamps each receiver sees. Returns rays cast.
-std::uint64_t cast_emission(const Radiosity& radiosity, std::span<const FaceId> emitters,
+/// Adds the light of `lamps`, suns and skies to `received`, as cast_light does, and notes which
+/// share of the lamps each receiver sees. Returns rays cast.
+std::uint64_t cast_emission(const Radiosity& radiosity, const Lamps& lamps,
                             const Receivers& receivers, std::span<const std::uint32_t> which,
                             float tolerance, const ColumnOptions& options, Received& received);
 

@@ -46,9 +46,18 @@ namespace {
 // A node may stand for its descendants while that shifts irradiance by less than this share of the
 // tolerance.
 constexpr float node_share = 0.05f;
-// Nor may a receiver be so near that the node fills this much of its view: samples spread over the
-// node's area would say little of the part right before it, which weighs most.
+// A factor from which on a source fills the view.
 constexpr float near_factor = 0.5f;
+
+// Of a small source right above a receiver that faces it.
+float rough_factor(const Source& source, const Receivers& receivers, std::uint32_t r) {
+    const Vec3f &a = source.corners[0], &c = source.corners[2];
+    const float dx = receivers.x[r] - 0.5f * (a.x + c.x);
+    const float dy = receivers.y[r] - 0.5f * (a.y + c.y);
+    const float dz = receivers.z[r] - 0.5f * (a.z + c.z);
+    const float square = dx * dx + dy * dy + dz * dz;
+    return source.area / (std::numbers::pi_v<float> * square + 1e-30f);
+}
 
 struct Shot {
     const RayCaster& caster;
@@ -71,12 +80,7 @@ struct Shot {
 
     // Near the source, or where it is uneven, receivers go on to the children.
     bool needs_children(const LightSource::Node& node, std::uint32_t r) const {
-        const Vec3f &a = node.source.corners[0], &c = node.source.corners[2];
-        const float dx = receivers.x[r] - 0.5f * (a.x + c.x);
-        const float dy = receivers.y[r] - 0.5f * (a.y + c.y);
-        const float dz = receivers.z[r] - 0.5f * (a.z + c.z);
-        const float square = dx * dx + dy * dy + dz * dz;
-        const float factor = node.source.area / (std::numbers::pi_v<float> * square + 1e-30f);
+        const float factor = rough_factor(node.source, receivers, r);
         return factor > near_factor ||
                node.spread * std::min(1.0f, factor) > node_share * tolerance;
     }
@@ -93,6 +97,10 @@ struct Shot {
 };
 
 }  // namespace
+
+bool fills_view(const Source& source, const Receivers& receivers, std::uint32_t receiver) {
+    return rough_factor(source, receivers, receiver) > near_factor;
+}
 
 std::uint64_t cast_light(const RayCaster& caster, const LightSource& source,
                          const Receivers& receivers, std::span<const std::uint32_t> which,

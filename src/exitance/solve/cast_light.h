@@ -32,6 +32,10 @@ struct Received {
              std::span<const float> row, float level, float magnitude);
 };
 
+/// Whether `source` fills so much of a receiver's view that it had better be divided: samples
+/// spread over its area would say little of the part right before the receiver, which weighs most.
+bool fills_view(const Source& source, const Receivers& receivers, std::uint32_t receiver);
+
 /// Adds the light of `source` to `received`. `which` lists receivers; entry i of `received` belongs
 /// to receiver i. `tolerance`: luminance of irradiance that does not matter. Returns rays cast.
 std::uint64_t cast_light(const RayCaster& caster, const LightSource& source,

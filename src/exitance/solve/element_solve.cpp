@@ -215,9 +215,9 @@ class ElementSolve {
         std::iota(everyone.begin(), everyone.end(), 0u);
         Received received;
         received.reset(everyone.size(), stride);
-        const std::vector<FaceId> emitters =
-            by_matrix ? std::vector<FaceId>{} : emitters_of(radiosity_);
-        report_.rays += cast_emission(radiosity_, emitters, points_.receivers, everyone, tolerance_,
+        const Lamps lamps =
+            by_matrix ? Lamps(radiosity_, std::span<const FaceId>()) : Lamps(radiosity_);
+        report_.rays += cast_emission(radiosity_, lamps, points_.receivers, everyone, tolerance_,
                                       options_.column, received);
         for (std::size_t i = 0; i < rows_.size(); ++i)
             for (std::uint32_t k = points_.begin[i]; k < points_.begin[i + 1]; ++k)

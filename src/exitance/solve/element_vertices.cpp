@@ -35,7 +35,7 @@ std::uint64_t gather_at_vertices(Radiosity& radiosity, const ElementCaster& cast
     std::iota(everyone.begin(), everyone.end(), 0u);
     Received received;
     received.reset(count, stride);
-    const std::uint64_t rays = cast_emission(radiosity, emitters_of(radiosity), radiosity.receivers,
+    const std::uint64_t rays = cast_emission(radiosity, Lamps(radiosity), radiosity.receivers,
                                              everyone, tolerance, options, received);
     radiosity.seen = received.seen;
     parallel_for(

@@ -48,7 +48,7 @@ std::optional<Obstacles> obstacles_of(const Radiosity& radiosity) {
 Gathering::Gathering(Radiosity& radiosity, const GatheringOptions& options)
     : radiosity_(radiosity),
       options_(options),
-      emitters_(emitters_of(radiosity)),
+      lamps_(radiosity),
       obstacles_(obstacles_of(radiosity)),
       direct_(0, radiosity.columns.count),
       mean_irradiance_(radiosity.area() > 0 ? radiosity.emitted_flux() / radiosity.area() : 0.0) {
@@ -139,7 +139,7 @@ void Gathering::demand(double error, double min_area) {
 std::uint64_t Gathering::cast_direct(const Receivers& receivers, Received& received) const {
     std::vector<std::uint32_t> which(receivers.size());
     std::iota(which.begin(), which.end(), 0u);
-    return cast_emission(radiosity_, emitters_, receivers, which, tolerance(), options_.column,
+    return cast_emission(radiosity_, lamps_, receivers, which, tolerance(), options_.column,
                          received);
 }
 

@@ -14,6 +14,7 @@
 #include "exitance/solve/cast_light.h"
 #include "exitance/solve/importance.h"
 #include "exitance/solve/indirect.h"
+#include "exitance/solve/lamps.h"
 #include "exitance/solve/memory.h"
 #include "exitance/solve/radiosity.h"
 #include "exitance/solve/reflected_light.h"
@@ -85,7 +86,7 @@ class Gathering final : public Solver {
     Radiosity& radiosity_;
     GatheringOptions options_;
     Phase phase_ = Phase::direct;
-    std::vector<FaceId> emitters_;
+    Lamps lamps_;
     std::optional<Obstacles> obstacles_;  ///< if the scene is one of few polygons
     std::optional<ReflectedLight> reflected_;
     std::optional<IndirectLight> indirect_;

@@ -100,6 +100,10 @@ LightSource collect(const Radiosity& radiosity, PatchId patch, const Leaf& leaf)
 
 }  // namespace
 
+std::uint32_t number_of_face(FaceId face) {
+    return first_face_number | face.value;
+}
+
 LightSource emission_of(const Radiosity& radiosity, FaceId id) {
     const Face& face = radiosity.mesh[id];
     const auto E = radiosity.emitted(face);
@@ -121,7 +125,7 @@ LightSource emission_of(const Radiosity& radiosity, FaceId id) {
         for (std::size_t k = 0; k < 4; ++k) self(self, first + k, quarters[k], depth - 1);
     };
     const auto corners = radiosity.mesh.corners(face);
-    append(corners, first_face_number | id.value);
+    append(corners, number_of_face(id));
     divide(divide, 0, corners, emission_depth);
     return out;
 }

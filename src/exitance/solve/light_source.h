@@ -33,7 +33,9 @@ struct LightSource {
     }
 };
 
-/// The emission of a whole face.
+/// Of the samples of a face that emits.
+std::uint32_t number_of_face(FaceId face);
+/// The emission of a whole face, divided for receivers near to it.
 LightSource emission_of(const Radiosity& radiosity, FaceId face);
 
 /// What a patch still has to shoot, element by element: ρ H − shot, plus ρ times `ambient`

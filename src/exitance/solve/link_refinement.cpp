@@ -54,7 +54,7 @@ void LinkRefinement::admit_leaves(const std::vector<ElementId>& leaves) {
     std::iota(everyone.begin(), everyone.end(), 0u);
     Received received;
     received.reset(everyone.size(), columns.stride);
-    rays_ += cast_emission(radiosity_, emitters_of(radiosity_), points.receivers, everyone,
+    rays_ += cast_emission(radiosity_, Lamps(radiosity_), points.receivers, everyone,
                            options_.tolerance, options_.column, received);
     std::vector<float> off(columns.stride);
     for (std::size_t i = 0; i < made.size(); ++i) {

@@ -25,7 +25,7 @@ constexpr float sum_rounding = 4 * std::numeric_limits<float>::epsilon();
 }  // namespace
 
 Shooting::Shooting(Radiosity& radiosity, const ShootingOptions& options)
-    : radiosity_(radiosity), options_(options), emitters_(emitters_of(radiosity)) {
+    : radiosity_(radiosity), options_(options), lamps_(radiosity) {
     const Mesh& mesh = radiosity_.mesh;
     const std::size_t stride = radiosity_.columns.stride;
     patch_shot_.assign(mesh.patches().size() * stride, 0.0f);
@@ -91,8 +91,8 @@ Shooting::Brightest Shooting::brightest() const {
 std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& received) {
     std::vector<std::uint32_t> which(receivers.size());
     std::iota(which.begin(), which.end(), 0u);
-    std::uint64_t rays = cast_emission(radiosity_, emitters_, receivers, which, tolerance(),
-                                       options_.column, received);
+    std::uint64_t rays =
+        cast_emission(radiosity_, lamps_, receivers, which, tolerance(), options_.column, received);
     const Columns& columns = radiosity_.columns;
     for (std::size_t p = 0; p < radiosity_.mesh.patches().size(); ++p)
         if (columns.magnitude({&patch_shot_[p * columns.stride], columns.stride}) > 0)
@@ -104,7 +104,7 @@ std::uint64_t Shooting::illuminate(const Receivers& receivers, Received& receive
 void Shooting::shoot_emission() {
     received_.reset(radiosity_.receivers.size(), radiosity_.columns.stride);
     rays_ += illuminate(radiosity_.receivers, received_);
-    shots_ += emitters_.size() + radiosity_.luminaires.size() + radiosity_.scene.distant.size();
+    shots_ += lamps_.size() + radiosity_.scene.distant.size();
     deliver(received_);
     radiosity_.seen = received_.seen;
     find_unshot();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "exitance/solve/cast_light.h"
+#include "exitance/solve/lamps.h"
 #include "exitance/solve/refine.h"
 #include "exitance/solve/solver.h"
 
@@ -75,7 +76,7 @@ class Shooting final : public Solver {
 
     Radiosity& radiosity_;
     ShootingOptions options_;
-    std::vector<FaceId> emitters_;  ///< brightest first
+    Lamps lamps_;
     bool refined_ = false;
 
     // Reflected light of a patch as a weighted sum over vertices, rebuilt when the mesh changes.

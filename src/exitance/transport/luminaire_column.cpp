@@ -77,8 +77,8 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
                                        double tolerance, std::uint32_t number,
                                        const Receivers& receivers,
                                        std::span<const std::uint32_t> which,
-                                       const ColumnOptions& options,
-                                       std::span<ColumnEntry> entries) {
+                                       const ColumnOptions& options, std::span<ColumnEntry> entries,
+                                       std::span<const float> irradiance) {
     std::atomic<std::uint64_t> rays{0};
     const Vec3 middle = caster.middle();
     const double clearance = caster.clearance();
@@ -94,7 +94,8 @@ std::uint64_t compute_luminaire_column(const RayCaster& caster, const LuminaireS
             const std::uint32_t r = which[begin + i];
             normals[i] = Vec3(receivers.normal(r));
             points[i] = Vec3(receivers.point(r)) + middle;
-            const double light = source.irradiance(points[i], normals[i]);
+            const double light = irradiance.empty() ? source.irradiance(points[i], normals[i])
+                                                    : double(irradiance[begin + i]);
             entries[begin + i] = {static_cast<float>(light), 1.0f, 0.0f};
             if (!(light > 0)) continue;
             most[i] =
