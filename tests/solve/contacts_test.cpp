@@ -158,5 +158,51 @@ TEST(Contact, WallsAreLitDownToTheFloor) {
     EXPECT_GT(feet, 6u);
 }
 
+// Two-sided posts, dark inside and too thin to cut the floor along them: outside of them no corner
+// of the floor is drawn with the darkness within.
+TEST(Posts, HaveNoDarkSpikesAroundTheirFeet) {
+    Scene scene;
+    add_room(scene, {}, {4, 4, 2.5}, 0.5);
+    add_lamp(scene, "lamp", {2, 2, 2.45}, 1, {10, 10, 10});
+    constexpr double half = 0.012;
+    std::vector<Vec3> posts;
+    for (const double x : {1, 2, 3})
+        for (const double y : {1, 2, 3}) {
+            posts.push_back({x, y, 0});
+            const auto s = add_surface(scene, "post", 0.5);
+            scene.materials.back().two_sided = true;
+            const Vec3 a{x - half, y - half, 0}, b{x + half, y - half, 0}, c{x + half, y + half, 0},
+                d{x - half, y + half, 0}, up{0, 0, 0.7};
+            const std::array<std::array<Vec3, 2>, 4> sides{{{a, b}, {b, c}, {c, d}, {d, a}}};
+            for (const auto& [from, to] : sides)
+                add_polygon(scene, s, {from, to, to + up, from + up});
+            add_polygon(scene, s, {a + up, b + up, c + up, d + up});
+        }
+    // So coarse that each post stands on a corner of elements and is thinner than what is cut.
+    SolveOptions options;
+    options.error = 0.3;
+    options.patch_size = 0.5;
+    options.adaptive = false;
+    const Solution solution = light(scene, options);
+    const auto level = [&](std::uint32_t v) { return double(solution.irradiance[VertexId(v)][0]); };
+    const auto inside = [&](const Vec3& p) {
+        return std::ranges::any_of(posts, [&](const Vec3& post) {
+            return std::abs(p.x - post.x) < half && std::abs(p.y - post.y) < half;
+        });
+    };
+    std::size_t floor = 0, within = 0, dark = 0;
+    for (const auto& t : solution.triangles)
+        for (const std::uint32_t v : t) {
+            const Vec3 p(solution.positions[v]);
+            if (p.z > 1e-6 || solution.normals[v].z < 0.5f) continue;
+            ++floor;
+            within += inside(p) ? 1 : 0;
+            dark += level(v) < 0.1 ? 1 : 0;
+        }
+    EXPECT_GT(floor, 300u);
+    EXPECT_GE(within, 9u * 4);
+    EXPECT_EQ(dark, 0u);
+}
+
 }  // namespace
 }  // namespace exitance

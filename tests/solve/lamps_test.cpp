@@ -25,8 +25,7 @@ Scene hall(int group_size) {
     add_room(scene, {}, {12, 12, 3}, 0.5);
     add_block(scene, {5, 5, 0}, {8, 6, 2}, 0.5);
     for (int i = 0; i < across * across; ++i) {
-        add_lamp(scene, "lamp " + std::to_string(i),
-                 {0.5 + i % across, 0.5 + static_cast<double>(i) / across, 2.9}, 0.1,
+        add_lamp(scene, "lamp " + std::to_string(i), {0.5 + i % across, 0.5 + i / across, 2.9}, 0.1,
                  {10.0 + i % 3, 10, 10});
         scene.materials.back().group = "group " + std::to_string(i / group_size);
     }

@@ -87,12 +87,12 @@ struct MeshOptions {
     /// Polygons are cut along contacts at least as long as this [m]: light may jump across them.
     double shortest_contact = 0.1;
 
-    /// Contacts shorter than a quarter of a patch are left to the elements: light gets round what
+    /// Contacts shorter than a sixteenth of a patch are left to the elements: light gets round what
     /// stands on them.
     static MeshOptions of_patches(double size) {
         MeshOptions out;
         out.patch_size = size;
-        out.shortest_contact = 0.25 * size;
+        out.shortest_contact = 0.0625 * size;
         return out;
     }
 };

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/solution/extract.h"
 
-#include <fmt/format.h>
 #include <tsl/robin_map.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <unordered_map>
 
 #include "exitance/run/random.h"
 #include "exitance/scene/texture_map.h"
+#include "exitance/solution/corner_light.h"
 
 namespace exitance {
 
@@ -20,22 +19,19 @@ struct KeyHash {
     std::size_t operator()(std::uint64_t key) const { return hash_bits(key); }
 };
 
-// Cosine between normals of surfaces that lie in one plane.
-constexpr float same_direction = 0.999f;
-
 class Extraction {
   public:
     Extraction(const Radiosity& radiosity, std::span<const float> unshot, Solution& out)
         : radiosity_(radiosity),
           mesh_(radiosity.mesh),
           out_(out),
-          stride_(radiosity.columns.stride + (unshot.empty() ? 0 : 1)) {
-        if (!unshot.empty()) append_column(unshot);
+          leaves_(leaves_of(mesh_)),
+          light_(radiosity, unshot, leaves_),
+          stride_(light_.stride()) {
+        find_live();
     }
 
     void run(std::vector<PatchId>* patches) {
-        find_leaves();
-        fill_buried();
         std::vector<std::vector<std::array<std::uint32_t, 3>>> by_surface(
             radiosity_.scene.surfaces.size());
         std::vector<std::vector<PatchId>> patches_of(by_surface.size());
@@ -71,16 +67,6 @@ class Extraction {
     }
 
   private:
-    // What is unshot is interpolated as the light is.
-    void append_column(std::span<const float> unshot) {
-        rows_of_mesh_.resize(unshot.size() * stride_);
-        for (std::size_t v = 0; v < unshot.size(); ++v) {
-            const auto H = radiosity_.irradiance[VertexId(v)];
-            std::copy(H.begin(), H.end(), &rows_of_mesh_[v * stride_]);
-            rows_of_mesh_[v * stride_ + stride_ - 1] = unshot[v];
-        }
-    }
-
     // Vertices made from now on are of this face: of a patterned one they have a place on its
     // textures, and are shared only with those that have the same.
     void enter(const Face& face) {
@@ -98,88 +84,17 @@ class Extraction {
         return mean_exitance(scene, scene.polygons[face.polygon.index()]);
     }
 
-    void find_leaves() {
+    static std::vector<ElementId> leaves_of(const Mesh& mesh) {
+        std::vector<ElementId> leaves;
+        for (const Patch& patch : mesh.patches())
+            mesh.for_leaves(patch.root, [&](ElementId id) { leaves.push_back(id); });
+        return leaves;
+    }
+
+    void find_live() {
         live_.assign(mesh_.positions().size(), 0);
-        for (const Patch& patch : mesh_.patches())
-            mesh_.for_leaves(patch.root, [&](ElementId id) {
-                leaves_.push_back(id);
-                for (const VertexId v : mesh_[id].corners()) live_[mesh_[v].position.index()] = 1;
-            });
-    }
-
-    // Irradiance of vertices that lie under other objects: from the exposed corners next to them,
-    // ring by ring, so that no dark fringe surrounds what stands on a surface.
-    void fill_buried() {
-        if (!any_buried()) return;
-        const std::size_t stride = stride_, count = mesh_.vertices().size();
-        buried_.assign(count * stride, 0.0f);
-        std::vector<char> known = radiosity_.exposed;
-        take_from_across(known);
-        std::vector<ElementId> open = leaves_;
-        for (bool found = true; found;) {
-            std::vector<std::uint32_t> neighbours(count, 0);
-            std::vector<ElementId> rest;
-            for (const ElementId leaf : open) {
-                const auto corners = mesh_[leaf].corners();
-                const auto is_known = [&](VertexId v) { return known[v.index()] != 0; };
-                if (std::all_of(corners.begin(), corners.end(), is_known)) continue;
-                rest.push_back(leaf);
-                for (const VertexId v : corners)
-                    for (const VertexId w : corners) {
-                        if (is_known(v) || !is_known(w)) continue;
-                        ++neighbours[v.index()];
-                        const auto H = light(w);
-                        for (std::size_t c = 0; c < stride; ++c)
-                            buried_[v.index() * stride + c] += H[c];
-                    }
-            }
-            found = false;
-            for (std::size_t v = 0; v < count; ++v) {
-                if (neighbours[v] == 0) continue;
-                for (std::size_t c = 0; c < stride; ++c)
-                    buried_[v * stride + c] /= static_cast<float>(neighbours[v]);
-                known[v] = 1;
-                found = true;
-            }
-            open = std::move(rest);
-        }
-    }
-
-    // Where a surface is cut along what stands on it, the two sides have vertices of their own:
-    // those under it take what those outside have, or its outline is dotted with dark pixels.
-    void take_from_across(std::vector<char>& known) {
-        std::vector<VertexId> open;
-        for (std::size_t v = 0; v < known.size(); ++v)
-            if (known[v]) open.push_back(VertexId(v));
-        const auto place = [&](VertexId v) { return mesh_[v].position.value; };
-        const auto before = [&](VertexId a, VertexId b) { return place(a) < place(b); };
-        std::stable_sort(open.begin(), open.end(), before);
-        for (std::size_t i = 0; i < known.size(); ++i) {
-            if (known[i]) continue;
-            const VertexId v(i);
-            const auto [begin, end] = std::equal_range(open.begin(), open.end(), v, before);
-            float found = 0;
-            for (auto w = begin; w != end; ++w) {
-                if (dot(mesh_[*w].normal, mesh_[v].normal) < same_direction) continue;
-                ++found;
-                for (std::size_t c = 0; c < stride_; ++c) buried_[i * stride_ + c] += light(*w)[c];
-            }
-            for (std::size_t c = 0; c < stride_; ++c)
-                buried_[i * stride_ + c] /= std::max(found, 1.0f);
-            known[i] = found > 0;
-        }
-    }
-
-    bool any_buried() const {
-        for (const char open : radiosity_.exposed)
-            if (!open) return true;
-        return false;
-    }
-
-    std::span<const float> light(VertexId v) const {
-        if (!radiosity_.exposed[v.index()]) return {&buried_[v.index() * stride_], stride_};
-        if (rows_of_mesh_.empty()) return radiosity_.irradiance[v];
-        return {&rows_of_mesh_[v.index() * stride_], stride_};
+        for (const ElementId leaf : leaves_)
+            for (const VertexId v : mesh_[leaf].corners()) live_[mesh_[v].position.index()] = 1;
     }
 
     std::uint32_t append(const Vec3& position, const Vec3f& normal, std::span<const float> row) {
@@ -195,8 +110,19 @@ class Extraction {
     }
 
     std::uint32_t vertex(VertexId v) {
-        return made_at(mesh_[v].position, mesh_[v].smooth,
-                       [&] { return append(mesh_[mesh_[v].position], mesh_[v].normal, light(v)); });
+        return made_at(mesh_[v].position, mesh_[v].smooth, [&] {
+            return append(mesh_[mesh_[v].position], mesh_[v].normal, light_[v]);
+        });
+    }
+
+    // A corner that lies behind what stands on the leaf is one apart, with the light before that.
+    std::uint32_t corner(VertexId v) {
+        if (!behind_.contains(v)) return vertex(v);
+        return append(mesh_[mesh_[v].position], mesh_[v].normal, before_);
+    }
+
+    std::span<const float> light_in_leaf(VertexId v) const {
+        return behind_.contains(v) ? std::span<const float>(before_) : light_[v];
     }
 
     /// The vertex at a place of a smooth surface, and of its textures; made when first asked for.
@@ -235,7 +161,7 @@ class Extraction {
         for (std::uint32_t side = 0; side < element.count; ++side) {
             const VertexId from = element.vertices[side];
             const VertexId to = element.vertices[(side + 1) % element.count];
-            loop.push_back(vertex(from));
+            loop.push_back(corner(from));
             between_.clear();
             mesh_.between(element, side, live_, between_);
             for (std::size_t k = 0; k < between_.size(); ++k) {
@@ -265,7 +191,7 @@ class Extraction {
             const auto t = static_cast<float>(length(mesh_[at] - from) / length(to - from));
             std::vector<float> row(stride_);
             for (std::size_t c = 0; c < row.size(); ++c)
-                row[c] = (1.0f - t) * light(a)[c] + t * light(b)[c];
+                row[c] = (1.0f - t) * light_in_leaf(a)[c] + t * light_in_leaf(b)[c];
             const Vec3f normal = normalized(mesh_[a].normal * (1.0f - t) + mesh_[b].normal * t);
             return append(mesh_[at], normal, row);
         });
@@ -273,6 +199,7 @@ class Extraction {
 
     void triangulate(ElementId leaf, std::vector<std::array<std::uint32_t, 3>>& triangles) {
         const Element& element = mesh_[leaf];
+        behind_ = light_.corners_behind(element, before_);
         outline(element, loop_);
         if (loop_.size() == 3) {
             triangles.push_back({loop_[0], loop_[1], loop_[2]});
@@ -304,7 +231,7 @@ class Extraction {
         for (const VertexId v : element.corners()) {
             position += mesh_[mesh_[v].position] * static_cast<double>(share);
             normal += mesh_[v].normal;
-            for (std::size_t c = 0; c < row.size(); ++c) row[c] += share * light(v)[c];
+            for (std::size_t c = 0; c < row.size(); ++c) row[c] += share * light_in_leaf(v)[c];
         }
         return append(position, normalized(normal), row);
     }
@@ -312,12 +239,13 @@ class Extraction {
     const Radiosity& radiosity_;
     const Mesh& mesh_;
     Solution& out_;
-    std::size_t stride_;               ///< of a row: the columns of light and maybe what is unshot
-    std::vector<float> rows_of_mesh_;  ///< vertices × stride where rows have that column
     std::vector<ElementId> leaves_;
+    CornerLight light_;
+    std::size_t stride_;  ///< of a row: the columns of light and maybe what is unshot
     std::vector<char> live_;
-    std::vector<float> buried_;  ///< vertices × stride_, or empty
-    std::vector<float> rows_;    ///< irradiance of the vertices made so far
+    CornerLight::Corners behind_;  ///< of the leaf that is being made into triangles
+    std::vector<float> before_;    ///< their light
+    std::vector<float> rows_;      ///< irradiance of the vertices made so far
     tsl::robin_map<std::uint64_t, std::uint32_t, KeyHash> index_;
     struct Maps {
         TextureMap reflectance, exitance;
@@ -352,58 +280,6 @@ Solution extract_solution(const Radiosity& radiosity, std::span<const float> uns
     Extraction(radiosity, unshot, out).run(patches);
     if (!out.texture_coordinates.empty()) out.texture_coordinates.resize(out.positions.size());
     return out;
-}
-
-std::string digest(const Scene& scene) {
-    std::uint64_t h = 0;
-    const auto add = [&](std::uint64_t bits) { h = hash_bits(h, bits); };
-    const auto number = [&](double value) { add(std::bit_cast<std::uint64_t>(value)); };
-    for (const Vec3& p : scene.points) number(p.x), number(p.y), number(p.z);
-    for (const Polygon& polygon : scene.polygons) {
-        for (const std::uint32_t corner : polygon.corners) add(corner);
-        add(polygon.surface);
-    }
-    for (const Surface& surface : scene.surfaces) add(surface.material);
-    for (const Material& material : scene.materials) {
-        for (const double r : material.reflectance) number(r);
-        for (const double e : material.exitance) number(e);
-        add(material.two_sided);
-        for (const Pattern* pattern : {&material.reflectance_pattern, &material.exitance_pattern}) {
-            if (!*pattern) continue;
-            add(pattern->texture->digest());
-            for (const double f : pattern->factor) number(f);
-        }
-    }
-    for (const TextureCoordinates& t : scene.texture_coordinates)
-        for (const TexturePoint& p : {t.reflectance, t.exitance})
-            number(double(p.u)), number(double(p.v));
-    for (const Luminaire& luminaire : scene.luminaires) {
-        for (const Vec3& v : {luminaire.position, luminaire.c0, luminaire.nadir})
-            number(v.x), number(v.y), number(v.z);
-        number(luminaire.multiplier);
-        for (const double c : luminaire.colour) number(c);
-        for (const double angle : luminaire.photometry->planes) number(angle);
-        for (const double angle : luminaire.photometry->gammas) number(angle);
-        for (const double candela : luminaire.photometry->candela) number(candela);
-        const LuminousOpening& opening = luminaire.photometry->opening;
-        add(static_cast<std::uint64_t>(opening.shape));
-        number(opening.size.x), number(opening.size.y), number(opening.size.z);
-    }
-    for (const DistantLight& light : scene.distant) {
-        add(static_cast<std::uint64_t>(light.kind));
-        for (const double c : light.colour) number(c);
-        const SkyModel& m = light.model;
-        for (const Vec3& v : {light.direction, m.sun}) number(v.x), number(v.y), number(v.z);
-        for (const double x : {light.diameter, light.irradiance, light.ground, light.strength, m.a,
-                               m.b, m.c, m.d, m.e, m.circumsolar_offset, m.scale})
-            number(x);
-        add(m.traditional_overcast);
-        if (!light.map) continue;
-        for (const float cell : light.map->cells) number(double(cell));
-    }
-    for (const Material& material : scene.materials)
-        if (material.clear_transmittance() > 0) number(material.clear_transmittance());
-    return fmt::format("{:016x}", h);
 }
 
 }  // namespace exitance
