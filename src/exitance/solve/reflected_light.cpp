@@ -16,9 +16,12 @@ namespace exitance {
 
 namespace {
 
-// A point sees many patches, whose errors are independent and average out: few rays each do.
-std::uint32_t balance_rays(double error) {
-    return static_cast<std::uint32_t>(std::clamp(64 * 0.02 / error, 16.0, 1024.0));
+// A point sees many patches, whose errors are independent and average out: few rays each do, and
+// fewer still where there are more than usual.
+std::uint32_t balance_rays(double error, std::size_t patches) {
+    constexpr double usual = 1e5;
+    const double share = std::min(1.0, std::sqrt(usual / static_cast<double>(patches + 1)));
+    return static_cast<std::uint32_t>(std::clamp(share * 128 * 0.02 / error, 16.0, 1024.0));
 }
 
 // What is left when the balance counts as struck: products are cheap, the rays have been cast.
@@ -66,14 +69,14 @@ ReflectedLight::ReflectedLight(Radiosity& radiosity, const ReflectedLightOptions
       scene_{radiosity.mesh, radiosity.caster, radiosity.owners, radiosity.two_sided()},
       rows_(patch_rows(radiosity)),
       slopes_(radiosity.mesh, rows_.area),
-      caster_(scene_, rows_, std::min(balance_rays(options.error), options.most_rays),
+      caster_(scene_, rows_, std::min(balance_rays(options.error, rows_.size()), options.most_rays),
               hash_bits(options.seed, 1)) {
     divide_into_cells();
     balance();
 }
 
 bool ReflectedLight::lacks_rays() const {
-    return options_.most_rays < balance_rays(options_.error);
+    return options_.most_rays < balance_rays(options_.error, rows_.size());
 }
 
 // R = ρ (D + F R) on the patches, as exchange areas in a sparse matrix.
