@@ -94,8 +94,9 @@ class ProradCommand {
             if (output_) write_solution(solution, *output_);
             if (reporting_.quiet) return;
             if (stopped) std::puts(stopped_early);
-            std::fputs(summary(solution, output_.value_or(picture), watch.seconds()).c_str(),
-                       stdout);
+            const std::string said = summary(solution, output_.value_or(picture), watch.seconds(),
+                                             options_.next_shot ? std::nullopt : aim_of(solution));
+            std::fputs(said.c_str(), stdout);
             std::fflush(stdout);
         };
 #ifdef EXITANCE_VIEWER

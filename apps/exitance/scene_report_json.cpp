@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "exitance/scene/spectrum.h"
+#include "reached_error.h"
 #include "scene_report.h"
 
 namespace exitance::cli {
@@ -173,6 +174,12 @@ std::string SolutionReport::json() const {
         out["error"] = {{"rms", solution_.error->rms},
                         {"confidence", solution_.error->confidence},
                         {"points", solution_.error->points}};
+    const auto aim = aim_of(solution_);
+    const auto is = aim ? reached(solution_, *aim) : std::nullopt;
+    out["error_reached"] = is ? Json(*is) : Json(nullptr);
+    out["stopped"] = solution_.ended == Ended::converged     ? Json(nullptr)
+                     : solution_.ended == Ended::out_of_time ? Json("time")
+                                                             : Json("interrupt");
     Json& groups = out["groups"] = Json::array();
     for (const LightGroup& group : solution_.groups)
         groups.push_back({{"name", group.name}, {"weight", group.weight}});

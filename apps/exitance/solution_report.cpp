@@ -41,6 +41,12 @@ std::string SolutionReport::text() const {
         out += fmt::format("Error: {}\n", error_text(solution_));
     else
         out += "Error: not estimated\n";
+    const auto aim = aim_of(solution_);
+    const std::string unreached = aim ? unreached_text(solution_, *aim) : "";
+    if (!unreached.empty()) out += fmt::format("  {}\n", unreached);
+    const std::string stopped = stopped_text(solution_);
+    const bool told = aim && reached(solution_, *aim) == false;
+    if (!stopped.empty() && !told) out += fmt::format("  {}\n", stopped);
 
     if (solution_.refined_for)
         out += fmt::format("Refined for {}: rough elsewhere, not view-independent\n",

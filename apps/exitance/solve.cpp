@@ -152,7 +152,9 @@ class SolveCommand {
                        resumed->outcome == Resumption::Outcome::sufficient
                            ? "has the error asked for: nothing is left to do"
                            : "is kept: nothing better was found");
-        fmt::print(said, "{}", summary(solution, output_.value_or("not written"), watch.seconds()));
+        const Aim aim{options_.error, resumed ? resumed->ended : solution.ended};
+        fmt::print(said, "{}",
+                   summary(solution, output_.value_or("not written"), watch.seconds(), aim));
     }
 
 #ifdef EXITANCE_VIEWER

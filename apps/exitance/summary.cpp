@@ -49,14 +49,13 @@ std::string balance_warning(const Solution& solution) {
     // Where nobody looks light is left as it is.
     if (solution.refined_for) return "";
     if (!(std::abs(off) > tolerable_imbalance(solution))) return "";
-    const auto time = solution.options.find("time");
-    const bool timed = time != solution.options.end() && !time->second.empty();
     return fmt::format(
         "the light that arrived is {} {} than what was emitted: most often {}a lamp is very close "
         "to a surface or inside of one (exitance info names those within 1 mm), where the mesh is "
         "too coarse for it",
         human_percent(std::abs(off)), off > 0 ? "less" : "more",
-        timed ? "there was too little time to divide the mesh, or " : "");
+        solution.ended == Ended::out_of_time ? "there was too little time to divide the mesh, or "
+                                             : "");
 }
 
 }  // namespace
@@ -108,7 +107,7 @@ std::string error_text(const Solution& solution) {
     const ErrorEstimate& error = *solution.error;
     // Few points with most of the error tell little more than how large it may be.
     const std::string value =
-        error.confidence < error.rms
+        tells_a_value(error)
             ? fmt::format("{} ± {}", human_percent(error.rms), human_percent(error.confidence))
             : "below " + human_percent(error.rms + error.confidence);
     const std::string where =
@@ -117,7 +116,8 @@ std::string error_text(const Solution& solution) {
                        error.points, where);
 }
 
-std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds) {
+std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds,
+                    const std::optional<Aim>& aim) {
     std::string out = fmt::format("{}: {}, {}, light groups: {}\n", file.string(),
                                   plural(solution.positions.size(), "vertex", "vertices"),
                                   plural(solution.triangles.size(), "triangle", "triangles"),
@@ -131,6 +131,8 @@ std::string summary(const Solution& solution, const std::filesystem::path& file,
     if (const std::string memory = memory_text(solution); !memory.empty())
         out += fmt::format("  memory  {}\n", memory);
     if (solution.error) out += fmt::format("  error   {}\n", error_text(solution));
+    const std::string unreached = aim ? unreached_text(solution, *aim) : "";
+    if (!unreached.empty()) out += fmt::format("  warning {}\n", unreached);
     const auto things = [&](const char* name, const char* one) -> std::string {
         const auto found = solution.counters.find(name);
         if (found == solution.counters.end() || found->second == 0) return {};

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "exitance/scene/scene.h"
 #include "exitance/solution/solution.h"
+#include "reached_error.h"
 
 namespace exitance::cli {
 
@@ -29,7 +31,9 @@ std::string focus_text(const RefinedFor& what);
 /// What --memory has left undone; empty if nothing.
 std::string memory_text(const Solution& solution);
 
-/// The solution in a few lines: size, energy balance, error estimate, work.
-std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds);
+/// The solution in a few lines: size, energy balance, error estimate, work; with an `aim` also
+/// whether that was missed.
+std::string summary(const Solution& solution, const std::filesystem::path& file, double seconds,
+                    const std::optional<Aim>& aim);
 
 }  // namespace exitance::cli

@@ -108,7 +108,9 @@ class ViewCommandLine {
                 walk.light(*scene, options_, file, interrupt.cancel(), {.ambient = true});
             if (output_ && !reporting_.quiet) {
                 if (lit.stopped) std::puts(stopped_early);
-                std::fputs(summary(lit.solution, *output_, watch.seconds()).c_str(), stdout);
+                const std::string said =
+                    summary(lit.solution, *output_, watch.seconds(), aim_of(lit.solution));
+                std::fputs(said.c_str(), stdout);
                 std::fflush(stdout);
             }
         }

@@ -236,8 +236,8 @@ std::function<bool()> interruption(const Task& task) {
 // Runs an adaptive solver to the error asked for, beginning with `demand`. Each demand after the
 // first takes most of the time that is left.
 template <class AdaptiveSolver>
-void run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, Demand& demand,
-                    const Shooting* shooting) {
+Ended run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& task, Demand& demand,
+                     const Shooting* shooting) {
     constexpr double share_of_rest = 0.7;
     const Observer watch = with_snapshots(task.observe, task.snapshots, radiosity, shooting);
     double left = 1;
@@ -248,8 +248,9 @@ void run_adaptively(AdaptiveSolver& solver, Radiosity& radiosity, const Task& ta
                 left * (1 - share_of_rest + share_of_rest * progress.fraction_left);
         if (watch) watch(progress);
     };
-    while (run(solver, task.stop, task.clock, tell) == Ended::converged) {
-        if (!demand.rise(task.options, radiosity)) break;
+    while (true) {
+        const Ended ended = run(solver, task.stop, task.clock, tell);
+        if (ended != Ended::converged || !demand.rise(task.options, radiosity)) return ended;
         if (!shooting && demand.is_of_mesh)
             demand.solution->energy = balance(radiosity, task.options.seed);
         demand.is_of_mesh = false;
@@ -264,12 +265,13 @@ Solution shoot_adaptively(Radiosity& radiosity, const Task& task) {
     shooting.interrupted = interruption(task);
     Shooting solver(radiosity, shooting);
     Demand demand{options.error};
-    run_adaptively(solver, radiosity, task, demand, &solver);
+    const Ended ended = run_adaptively(solver, radiosity, task, demand, &solver);
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, &solver);
     const EnergyBalance energy = balance(radiosity, options.seed);
     if (options.merge) merge_smooth(radiosity, solver.negligible());
     Solution out = solution_of(radiosity);
     out.energy = energy;
+    out.ended = ended;
     out.counters["shots"] = static_cast<double>(solver.shots());
     out.counters["rays"] = static_cast<double>(solver.rays());
     return out;
@@ -359,9 +361,11 @@ Solution gather_adaptively(Radiosity& radiosity, const Task& task, Resumption* r
         };
     const Task shown{options,      task.size, task.stop,  task.clock,
                      task.observe, snapshots, task.focus, task.memory};
-    run_adaptively(solver, radiosity, shown, demand, nullptr);
+    const Ended ended = run_adaptively(solver, radiosity, shown, demand, nullptr);
+    if (resumption) resumption->ended = ended;
     std::optional<Solution> better = gathered(solver, radiosity, task, demand);
     if (!better) return std::move(resumption->from);
+    better->ended = ended;
     if (resumption) resumption->outcome = Resumption::Outcome::improved;
     better->counters["rays"] = static_cast<double>(solver.rays());
     better->counters["shots"] = 0;
@@ -378,8 +382,10 @@ Solution solve_by_elements(Radiosity& radiosity, const Task& task) {
     const ElementReport report =
         solve_elements(radiosity, elements, task.stop, task.clock,
                        with_snapshots(task.observe, task.snapshots, radiosity, nullptr));
+    const auto interrupted = task.stop.interruption(task.clock);
     if (task.snapshots.take) take_snapshot(task.snapshots, radiosity, nullptr);
     Solution out = solution_of(radiosity);
+    out.ended = interrupted.value_or(Ended::converged);
     out.energy = balance(radiosity, task.options.seed);
     out.counters["rows"] = static_cast<double>(report.rows);
     out.counters["sweeps"] = report.sweeps;

@@ -33,6 +33,7 @@ struct Resumption {
         sufficient  ///< it had the error asked for
     };
     Outcome outcome = Outcome::improved;
+    Ended ended = Ended::converged;  ///< what ended the work, also where `from` is returned
 };
 
 /// Lights the scene. `observe` is called from the calling thread between shots; when `cancel` is

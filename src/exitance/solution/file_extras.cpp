@@ -67,6 +67,16 @@ SensorGrid read_grid(const Node& node) {
     return grid;
 }
 
+const char* stopped_by(Ended ended) {
+    return ended == Ended::out_of_time ? "time" : "interrupt";
+}
+
+Ended read_stopped(const Node& node) {
+    for (const Ended ended : {Ended::out_of_time, Ended::cancelled})
+        if (node.text() == stopped_by(ended)) return ended;
+    node.refuse("time or interrupt");
+}
+
 Quantity read_quantity(const Node& node) {
     for (const Quantity q : {Quantity::unitless, Quantity::radiometric, Quantity::photometric})
         if (node.text() == quantity_name(q)) return q;
@@ -120,6 +130,7 @@ json extras_of(const Solution& s) {
         out["error"] = {{"rms", s.error->rms},
                         {"confidence", s.error->confidence},
                         {"points", s.error->points}};
+    if (s.ended != Ended::converged) out["stopped"] = stopped_by(s.ended);
     if (s.refined_for) {
         json& refined = out["refined_for"] = json::object();
         if (s.refined_for->camera) refined["camera"] = *s.refined_for->camera;
@@ -242,6 +253,7 @@ void read_extras(const Node& extras, Solution& s) {
             ErrorEstimate{error["rms"].number(), error["confidence"].number(),
                           static_cast<std::uint32_t>(error["points"].index_below(1ull << 32))};
     }
+    if (extras.has("stopped")) s.ended = read_stopped(extras["stopped"]);
     if (extras.has("refined_for")) {
         const Node refined = extras["refined_for"];
         s.refined_for.emplace();

@@ -15,6 +15,7 @@
 #include "exitance/mesh/field.h"
 #include "exitance/scene/groups.h"
 #include "exitance/scene/scene.h"
+#include "exitance/solve/solver.h"
 
 namespace exitance {
 
@@ -103,6 +104,7 @@ struct Solution {
     EnergyBalance energy;
     std::optional<RefinedFor> refined_for;  ///< nothing: all places alike, view-independent
     std::optional<ErrorEstimate> error;
+    Ended ended = Ended::converged;              ///< what ended the work
     std::map<std::string, std::string> options;  ///< as used, for reproduction
     std::map<std::string, double> counters;      ///< shots, rays, vertices …
     std::string scene_digest;                    ///< hexadecimal

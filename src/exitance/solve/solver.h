@@ -25,7 +25,11 @@ class Solver {
     virtual Progress progress() const = 0;
 };
 
-enum class Ended { converged, out_of_time, cancelled };
+enum class Ended {
+    converged,  ///< by its own rule
+    out_of_time,
+    cancelled
+};
 
 /// When to end; whichever comes first.
 struct Stop {
