@@ -97,6 +97,34 @@ TEST(PlaceOwnersTest, TheFirstOfCoplanarPolygons) {
     EXPECT_TRUE(w.owns(0, {3, 3, 0}, up));
 }
 
+TEST(PlaceOwnersTest, ALampBeforeAllElse) {
+    for (const bool lamp_is_first : {false, true}) {
+        World w;
+        const auto lamp = testing::add_surface(w.scene, "lamp", 0.5, 10);
+        if (lamp_is_first) add_square(w.scene, lamp, 1, 1, 0, 1);
+        add_square(w.scene, w.floor, 0, 0, 0, 4);
+        add_square(w.scene, w.block, 1, 1, 0, 2);
+        if (!lamp_is_first) add_square(w.scene, lamp, 1, 1, 0, 1);
+        const std::size_t floor = lamp_is_first ? 1 : 0, of_lamp = lamp_is_first ? 0 : 2;
+        const Vec3 lit{1.5, 1.5, 0}, beside{2.5, 1.5, 0};
+        EXPECT_TRUE(w.owns(of_lamp, lit, up));
+        EXPECT_FALSE(w.owns(floor, lit, up));
+        EXPECT_FALSE(w.owns(floor + 1, lit, up));
+        EXPECT_TRUE(w.owns(floor, beside, up));
+        EXPECT_FALSE(w.owns(floor + 1, beside, up)) << "the floor comes first";
+        const RayCaster c = w.caster();
+        const PlaceOwners owners(w.scene, c);
+        const auto below = [&](std::size_t polygon, const Vec3& place) {
+            return owners.below_lamp(PolygonId(polygon), false, place - c.middle());
+        };
+        EXPECT_TRUE(below(floor, lit));
+        EXPECT_FALSE(below(floor, beside));
+        EXPECT_TRUE(below(floor + 1, lit));
+        EXPECT_FALSE(below(floor + 1, beside)) << "what owns that does not emit";
+        EXPECT_FALSE(below(of_lamp, lit));
+    }
+}
+
 TEST(PlaceOwnersTest, NeighboursAndParallelsKeepTheirOwn) {
     World w;
     add_square(w.scene, w.floor, 0, 0, 0);

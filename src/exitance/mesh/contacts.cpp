@@ -83,6 +83,21 @@ std::optional<Contact> contact_of(const Flat& base, const Flat& other, double to
     return Contact{from + direction * part->low, from + direction * part->high, 0};
 }
 
+// The sides of a lamp that lies in the plane of `base`, as far as they lie within it.
+void add_outline(const Flat& base, const Flat& lamp, std::uint32_t number, double tolerance,
+                 std::vector<Contact>& out) {
+    for (const Vec3& corner : lamp.corners())
+        if (std::abs(dot(corner - base.at[0], base.normal)) > tolerance) return;
+    for (std::uint32_t i = 0; i < lamp.count; ++i) {
+        const Vec3 from = lamp.at[i], side = lamp.at[(i + 1) % lamp.count] - from;
+        const double whole = length(side);
+        if (whole <= tolerance) continue;
+        const Vec3 direction = side / whole;
+        if (const auto part = clip(base, from, direction, {0, whole}, tolerance))
+            out.push_back({from + direction * part->low, from + direction * part->high, number});
+    }
+}
+
 }  // namespace
 
 std::vector<std::vector<Contact>> find_contacts(const Scene& scene, double shortest,
@@ -104,6 +119,15 @@ std::vector<std::vector<Contact>> find_contacts(const Scene& scene, double short
         large.push_back(static_cast<std::uint32_t>(p));
     }
     const BoxTree tree(boxes);
+    std::vector<Box> lamp_boxes;
+    std::vector<std::uint32_t> lamps;
+    for (std::size_t p = 0; p < flat.size(); ++p) {
+        if (!scene.material(scene.polygons[p]).emits() || !(area(flat[p].corners()) > 0)) continue;
+        lamp_boxes.emplace_back();
+        for (const Vec3& c : flat[p].corners()) lamp_boxes.back().add(c);
+        lamps.push_back(static_cast<std::uint32_t>(p));
+    }
+    const BoxTree tree_of_lamps(lamp_boxes);
     std::vector<std::vector<Contact>> out(scene.polygons.size());
     parallel_for(large.size(), [&](std::size_t k) {
         const Flat& base = flat[large[k]];
@@ -115,6 +139,10 @@ std::vector<std::vector<Contact>> find_contacts(const Scene& scene, double short
             contact->polygon = large[other];
             contacts.push_back(*contact);
         });
+        if (!scene.material(scene.polygons[large[k]]).emits())
+            tree_of_lamps.for_overlapping(boxes[k], [&](std::uint32_t lamp) {
+                add_outline(base, flat[lamps[lamp]], lamps[lamp], tolerance, contacts);
+            });
         std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
             const double x = length(a.to - a.from), y = length(b.to - b.from);
             return x != y ? x > y : a.polygon < b.polygon;

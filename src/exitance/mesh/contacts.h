@@ -17,8 +17,9 @@ struct Contact {
     std::uint32_t polygon = 0;  ///< the other one
 };
 
-/// Contacts of every polygon, longest first, none shorter than `shortest` [m]. A gap of
-/// `tolerance` [m] still is a contact. Polygons that are not flat within it have none.
+/// Contacts of every polygon, longest first, none shorter than `shortest` [m] but the outlines of
+/// lamps that lie in its plane. A gap of `tolerance` [m] still is a contact. Polygons that are not
+/// flat within it, or smaller than `shortest`, have none.
 std::vector<std::vector<Contact>> find_contacts(const Scene& scene, double shortest,
                                                 double tolerance);
 

@@ -133,11 +133,16 @@ void report_pairs(const Scene& scene, const std::vector<FacePair>& pairs, const 
             return;
         }
         const std::string a = scene.label(surfaces.first), b = scene.label(surfaces.second);
+        const bool first = scene.materials[scene.surfaces[surfaces.first].material].emits();
+        const bool second = scene.materials[scene.surfaces[surfaces.second].material].emits();
+        const std::string lamp =
+            first == second ? ""
+                            : fmt::format("; {}, which emits, is what counts there", first ? a : b);
         const std::string times = how_many(entry.first, "pair of faces", "pairs of faces");
         tell(problems, entry.second,
              surfaces.first == surfaces.second
                  ? fmt::format("{} of {} {}", times, a, what)
-                 : fmt::format("{} of {} and {} {}", times, a, b, what));
+                 : fmt::format("{} of {} and {} {}{}", times, a, b, what, lamp));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "exitance/math/polygon.h"
 #include "exitance/run/random.h"
 #include "exitance/scene/texture_map.h"
 #include "exitance/solution/corner_light.h"
@@ -36,6 +37,7 @@ class Extraction {
             radiosity_.scene.surfaces.size());
         std::vector<std::vector<PatchId>> patches_of(by_surface.size());
         for (const ElementId leaf : leaves_) {
+            if (below_lamp(mesh_[leaf])) continue;
             const Face& face = mesh_.face_of(mesh_[leaf]);
             enter(face);
             triangulate(leaf, by_surface[face.surface]);
@@ -67,6 +69,22 @@ class Extraction {
     }
 
   private:
+    // Whether a lamp has all of the leaf's place: there is nothing to be seen of it.
+    bool below_lamp(const Element& leaf) const {
+        const Face& face = mesh_.face_of(leaf);
+        const auto is_below = [&](const Vec3& place) {
+            return radiosity_.owners.below_lamp(face.polygon, face.back,
+                                                place - radiosity_.caster.middle());
+        };
+        const auto corners = mesh_.corners(leaf);
+        const Vec3 middle = centroid({corners.data(), leaf.count});
+        if (!is_below(middle)) return false;
+        // Just inside, for corners lie on the lamp's outline.
+        return std::all_of(corners.begin(), corners.begin() + leaf.count, [&](const Vec3& corner) {
+            return is_below(corner * 0.99 + middle * 0.01);
+        });
+    }
+
     // Vertices made from now on are of this face: of a patterned one they have a place on its
     // textures, and are shared only with those that have the same.
     void enter(const Face& face) {

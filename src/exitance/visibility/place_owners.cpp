@@ -52,6 +52,16 @@ bool apart(const Plane& plane, const Plane& other, double margin) {
     return false;
 }
 
+bool emits(const Scene& scene, std::uint32_t polygon) {
+    return scene.material(scene.polygons[polygon]).emits();
+}
+
+// A lamp that is drawn flush with a ceiling shines; of equals the first owns the place.
+bool goes_before(const Scene& scene, std::uint32_t a, std::uint32_t b) {
+    const bool lamp = emits(scene, a);
+    return lamp == emits(scene, b) ? a < b : lamp;
+}
+
 }  // namespace
 
 PlaceOwners::PlaceOwners(const Scene& scene, const RayCaster& caster) {
@@ -66,7 +76,7 @@ PlaceOwners::PlaceOwners(const Scene& scene, const RayCaster& caster) {
             const Plane plane(scene, polygon);
             if (plane.normal == Vec3{}) return;
             const auto look_at = [&](std::uint32_t other, double radius) {
-                if (other >= polygon) return radius;
+                if (!goes_before(scene, other, polygon)) return radius;
                 const Plane owner(scene, other);
                 const double facing = dot(owner.normal, plane.normal);
                 if (std::abs(facing) < parallel_cosine) return radius;
@@ -83,10 +93,17 @@ PlaceOwners::PlaceOwners(const Scene& scene, const RayCaster& caster) {
         },
         64);
     begin_.push_back(0);
-    for (auto& owners : found) {
-        std::sort(owners.begin(), owners.end());
+    lamps_.assign(sides, 0);
+    for (std::size_t side = 0; side < sides; ++side) {
+        auto& owners = found[side];
+        std::sort(owners.begin(), owners.end(),
+                  [&](std::uint32_t a, std::uint32_t b) { return goes_before(scene, a, b); });
         for (const std::uint32_t owner : owners)
             covers_.push_back(cover_of(Plane(scene, owner), caster.middle()));
+        if (!owners.empty() && !emits(scene, static_cast<std::uint32_t>(side / 2)))
+            lamps_[side] = static_cast<std::uint32_t>(
+                std::count_if(owners.begin(), owners.end(),
+                              [&](std::uint32_t owner) { return emits(scene, owner); }));
         begin_.push_back(static_cast<std::uint32_t>(covers_.size()));
     }
 }
@@ -100,6 +117,12 @@ bool PlaceOwners::owns(PolygonId polygon, bool back, const Vec3& place) const {
     for (const Cover& cover : covers(polygon, back))
         if (cover.contains(Vec3f(place))) return false;
     return true;
+}
+
+bool PlaceOwners::below_lamp(PolygonId polygon, bool back, const Vec3& place) const {
+    const auto lamps = covers(polygon, back).first(lamps_[2 * polygon.index() + (back ? 1 : 0)]);
+    return std::any_of(lamps.begin(), lamps.end(),
+                       [&](const Cover& cover) { return cover.contains(Vec3f(place)); });
 }
 
 }  // namespace exitance
