@@ -52,7 +52,7 @@ std::vector<Piece> pieces_of(const Solution& solution, const Surfaces& surfaces)
 /// By points on all that receives light. A sharp shadow lies in a thousandth of the area: half of
 /// the points are spread evenly, half where light changes.
 Found error_of(const Solution& solution, const Case& c) {
-    constexpr std::size_t count = 8192;
+    constexpr std::size_t count = 65536;
     const Surfaces surfaces(solution, Backs::black);
     const std::vector<Piece> pieces = pieces_of(solution, surfaces);
     Found out;

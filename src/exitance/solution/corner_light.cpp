@@ -38,19 +38,23 @@ CornerLight::Corners CornerLight::corners_behind(const Element& leaf,
             radiosity_.columns.luminance((*this)[corners[i]].first(radiosity_.columns.stride));
         if (level[i] > level[brightest]) brightest = i;
     }
-    const auto lifted = [&](VertexId v, double height) {
-        return mesh[v].sample + Vec3(mesh[v].normal) * height;
+    const VertexId bright = corners[brightest];
+    const auto hidden = [&](const Vec3& place) {
+        const Vec3 from = mesh[bright].sample;
+        const Vec3 up = Vec3(mesh[bright].normal) *
+                        (lift * length(place - from) + radiosity_.caster.clearance());
+        return radiosity_.caster.occluded(from + up, place + up);
     };
     Corners behind;
+    Vec3 middle;
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        if (!(level[i] < dark_share * level[brightest])) continue;
-        const VertexId a = corners[brightest], b = corners[i];
-        const double height =
-            lift * length(mesh[a].sample - mesh[b].sample) + radiosity_.caster.clearance();
-        if (radiosity_.caster.occluded(lifted(a, height), lifted(b, height)))
-            behind.at[behind.count++] = b;
+        const Vec3 place = mesh[corners[i]].sample;
+        middle += place / static_cast<double>(corners.size());
+        if (level[i] < dark_share * level[brightest] && hidden(place))
+            behind.at[behind.count++] = corners[i];
     }
-    if (behind.count == 0) return behind;
+    // If most of the leaf is behind, it is drawn as it is there.
+    if (behind.count == 0 || hidden(middle)) return {};
     before.assign(stride_, 0.0f);
     const float share = 1.0f / static_cast<float>(corners.size() - behind.count);
     for (const VertexId v : corners) {

@@ -33,8 +33,8 @@ class CornerLight {
             return std::find(at.begin(), at.begin() + count, v) != at.begin() + count;
         }
     };
-    /// The corners that are dark since something stands on the leaf between them and a bright one;
-    /// `before` is the mean light of the others.
+    /// The corners that are dark since something stands on the leaf between them and a bright one,
+    /// if the middle is in front of that; `before` is the mean light of the others.
     Corners corners_behind(const Element& leaf, std::vector<float>& before) const;
 
   private:

@@ -17,6 +17,11 @@ double next_demand(double last, double found, const SolveOptions& options) {
     return last * std::clamp(0.8 * options.error / found, 0.4, 0.8);
 }
 
+// What is small and wrong few points show, and leave much doubt.
+double worst_likely(const ErrorEstimate& estimate) {
+    return estimate.rms + estimate.confidence;
+}
+
 std::map<std::string, double> counters_of(const Radiosity& radiosity) {
     return {{"vertices", static_cast<double>(radiosity.mesh.vertices().size())},
             {"patches", static_cast<double>(radiosity.mesh.patches().size())},
@@ -59,9 +64,7 @@ TriangleImportance importance_of(const std::vector<PatchId>& patches,
 }
 
 bool Demand::met_by(const ErrorEstimate& estimate, const SolveOptions& options) const {
-    // What fills a picture may be small and wrong: few points show it, and leave much doubt.
-    const double doubt = importance ? estimate.confidence : 0.0;
-    return estimate.rms + doubt <= options.error;
+    return worst_likely(estimate) <= options.error;
 }
 
 void Demand::take_if_better(Solution now) {
@@ -82,9 +85,9 @@ bool Demand::rise(const SolveOptions& options, const Radiosity& radiosity) {
     take_if_better(std::move(now));
     if (!estimate || met_by(*estimate, options) || (is_last && is_last())) return false;
     const bool had_begun = error <= options.error;
-    if (had_begun && estimate->rms > worthwhile * found) return false;
+    if (had_begun && worst_likely(*estimate) > worthwhile * found) return false;
     if (error <= least * options.error) return false;
-    found = estimate->rms;
+    found = worst_likely(*estimate);
     error = next_demand(error, found, options);
     return risen = true;
 }
@@ -96,7 +99,7 @@ void Demand::resume(const Solution& kept, const std::optional<ErrorEstimate>& es
     const auto counter = kept.counters.find(demand_counter);
     if (!estimate || counter == kept.counters.end() || !(counter->second > 0)) return;
     done = counter->second;
-    const double needed = 0.8 * options.error / estimate->rms * *done;
+    const double needed = 0.8 * options.error / worst_likely(*estimate) * *done;
     error = std::clamp(needed, 0.4 * error, error);
 }
 

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// E(x) = Σ_emitters E_j F_xj V_xj + Σ_luminaires E_l V_l + ∫ (B − E) cosθ/π dω.
+// E(x) = Σ_emitters E_j F_xj V_xj + Σ_luminaires E_l V_l + ∫ (B − E) cosθ/π dω, the last by rays
+// over the hemisphere and, where little of the surface reflects much of the light, by rays towards
+// that; both are combined by the balance heuristic (Veach & Guibas 1995).
 #include "exitance/solution/gather.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "exitance/formfactor/point_polygon.h"
 #include "exitance/run/parallel.h"
 #include "exitance/run/random.h"
+#include "exitance/solution/bright_triangles.h"
 #include "exitance/transport/distant_column.h"
 #include "exitance/transport/luminaire_column.h"
 #include "exitance/visibility/beyond_glass.h"
@@ -48,7 +52,8 @@ class Gatherer {
           s_(surfaces.solution()),
           points_(points),
           out_(columns),
-          options_(options) {
+          options_(options),
+          bright_(surfaces) {
         for (const SolutionLuminaire& placed : s_.luminaires)
             luminaires_.emplace_back(placed.luminaire);
         for (std::uint32_t l = 0; l < s_.distant.size(); ++l)
@@ -60,7 +65,10 @@ class Gatherer {
         std::fill(out_.begin() + std::ptrdiff_t(begin * s_.columns()),
                   out_.begin() + std::ptrdiff_t(end * s_.columns()), 0.0);
         add_emission(begin, end);
-        for (std::size_t i = begin; i < end; ++i) add_reflection(i);
+        for (std::size_t i = begin; i < end; ++i) {
+            add_reflection(i);
+            if (!bright_.empty()) add_bright(i);
+        }
     }
 
   private:
@@ -69,6 +77,7 @@ class Gatherer {
     std::span<const GatherPoint> points_;
     std::span<double> out_;
     const GatherOptions& options_;
+    const BrightTriangles bright_;
     std::vector<LuminaireSource> luminaires_;
     std::vector<std::pair<std::uint32_t, SkySource>> skies_;
 
@@ -264,8 +273,7 @@ class Gatherer {
         const Vec3f normal(p.normal);
         const Vec3f origin(clear_of_surfaces(surfaces_, p) - surfaces_.caster().middle());
         const std::uint64_t key = hash_bits(options_.seed, point, 1);
-        const std::uint32_t packets =
-            (options_.hemisphere_rays + RayPacket::width - 1) / RayPacket::width;
+        const std::uint32_t packets = hemisphere_packets();
         if (packets == 0) return;
 
         RayPacket rays;
@@ -277,12 +285,11 @@ class Gatherer {
             share.fill(1);
             const auto add = [&](std::size_t i, const RayCaster::PacketHits& met) {
                 if (!(met.front >> i & 1u)) return;
-                const auto place = Surfaces::place(met.primitive[i], met.u[i], met.v[i]);
-                surfaces_.irradiance(place, H);
-                Surfaces::PatternHere room;
-                const auto rho = surfaces_.reflectance(place, room);
-                for (std::size_t c = 0; c < sum.size(); ++c)
-                    sum[c] += share[i] * rho[c % rho.size()] * H[c];
+                const Vec3 way =
+                    Vec3{rays.direction_x[i], rays.direction_y[i], rays.direction_z[i]} *
+                    double(met.distance[i]);
+                const double part = share[i] * share_of_hemisphere(met.primitive[i], way, p.normal);
+                add_reflected(Surfaces::place(met.primitive[i], met.u[i], met.v[i]), part, H, sum);
             };
             closest_beyond_glass(surfaces_.caster(), rays, hits, [&](auto i, const auto& met) {
                 add(i, met);
@@ -293,6 +300,73 @@ class Gatherer {
         const std::span<double> columns = row(point);
         for (std::size_t c = 0; c < sum.size(); ++c)
             columns[c] += sum[c] / double(packets * RayPacket::width);
+    }
+
+    std::uint32_t hemisphere_packets() const {
+        return (options_.hemisphere_rays + RayPacket::width - 1) / RayPacket::width;
+    }
+    /// Half as many rays go to what is bright.
+    std::uint32_t bright_rays() const {
+        return bright_.empty() ? 0 : hemisphere_packets() * RayPacket::width / 2;
+    }
+
+    /// += `part` ρ H.
+    void add_reflected(const SurfacePlace& place, double part, std::span<double> H,
+                       std::span<double> sum) const {
+        surfaces_.irradiance(place, H);
+        Surfaces::PatternHere room;
+        const auto rho = surfaces_.reflectance(place, room);
+        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += part * rho[c % rho.size()] * H[c];
+    }
+
+    /// cosθ₁ cosθ₂ / (π r²) of two places, `way` from the one with normal `here` to the other.
+    static double factor(const Vec3& way, const Vec3& here, const Vec3& there) {
+        const double square = dot(way, way);
+        const double cosines = std::max(0.0, dot(way, here)) * std::max(0.0, -dot(way, there));
+        return square > 0 ? cosines / (std::numbers::pi * square * square) : 0.0;
+    }
+
+    /// What a ray over the hemisphere that met `triangle` counts beside those that looked there.
+    double share_of_hemisphere(std::uint32_t triangle, const Vec3& way, const Vec3& normal) const {
+        const double density = bright_.density(triangle);
+        if (!(density > 0)) return 1;
+        const auto [a, b, c] = surfaces_.corners(triangle);
+        const double met = hemisphere_packets() * RayPacket::width *
+                           factor(way, normal, normalized(cross(b - a, c - a)));
+        return met > 0 ? met / (met + bright_rays() * density) : 0.0;
+    }
+
+    void add_bright(std::size_t point) const {
+        const GatherPoint& p = points_[point];
+        const double clearance = surfaces_.caster().clearance();
+        const Vec3 middle = surfaces_.caster().middle(),
+                   from = clear_of_surfaces(surfaces_, p) - middle;
+        const std::uint64_t key = hash_bits(options_.seed, point, 2);
+        const double over_hemisphere = hemisphere_packets() * RayPacket::width;
+        std::vector<double> H(s_.columns());
+        RayPacket rays;
+        rays.near.fill(0.0f), rays.far.fill(1.0f);
+        std::array<float, RayPacket::width> through;
+        std::array<BrightTriangles::Sample, RayPacket::width> samples;
+        std::array<double, RayPacket::width> part;
+        for (std::uint32_t first = 0; first < bright_rays(); first += RayPacket::width) {
+            rays.active = 0;
+            const std::uint32_t count =
+                std::min<std::uint32_t>(RayPacket::width, bright_rays() - first);
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const auto [x, u, v, unused] = low_discrepancy_4(key, first + i);
+                samples[i] = bright_.sample(x, u, v);
+                const Vec3 to = samples[i].place - middle;
+                const double met = factor(to - from, p.normal, samples[i].normal);
+                part[i] = met / (bright_rays() * samples[i].density + over_hemisphere * met);
+                if (met > 0) rays.aim(i, from, to + samples[i].normal * clearance - from);
+            }
+            through.fill(1.0f);
+            const std::uint32_t open = rays.active & ~surfaces_.caster().occluded(rays, through);
+            for (std::uint32_t i = 0; i < count; ++i)
+                if (open >> i & 1u)
+                    add_reflected(samples[i].at, part[i] * double(through[i]), H, row(point));
+        }
     }
 };
 

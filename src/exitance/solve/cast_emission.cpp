@@ -133,7 +133,7 @@ class LampShot {
             if (!view.alone())
                 shared_.push_back(view.receiver);
             else
-                (lamp.polygon && fills_view(*lamp.polygon, receivers_, which_[view.receiver])
+                (lamp.face.valid() && fills_view(*lamp.polygon, receivers_, which_[view.receiver])
                      ? near_
                      : alone_)
                     .push_back(view.receiver);
@@ -222,21 +222,26 @@ class LampShot {
 
 }  // namespace
 
+std::uint64_t cast_lamps(const Radiosity& radiosity, const Lamps& lamps, const Receivers& receivers,
+                         std::span<const std::uint32_t> which, float tolerance,
+                         const ColumnOptions& options, Received& received) {
+    if (lamps.size() == 0) return 0;
+    std::atomic<std::uint64_t> rays{0};
+    const std::size_t block =
+        std::clamp(most_numbers / lamps.size(), least_block, ReceiverBlock::capacity);
+    parallel_blocks(which.size(), block, [&](std::size_t begin, std::size_t end) {
+        LampShot shot(radiosity, lamps, receivers, which.subspan(begin, end - begin), tolerance,
+                      options, received);
+        rays.fetch_add(shot.cast(), std::memory_order_relaxed);
+    });
+    return rays.load();
+}
+
 std::uint64_t cast_emission(const Radiosity& radiosity, const Lamps& lamps,
                             const Receivers& receivers, std::span<const std::uint32_t> which,
                             float tolerance, const ColumnOptions& options, Received& received) {
-    std::uint64_t rays = 0;
-    if (lamps.size() > 0) {
-        std::atomic<std::uint64_t> of_lamps{0};
-        const std::size_t block =
-            std::clamp(most_numbers / lamps.size(), least_block, ReceiverBlock::capacity);
-        parallel_blocks(which.size(), block, [&](std::size_t begin, std::size_t end) {
-            LampShot shot(radiosity, lamps, receivers, which.subspan(begin, end - begin), tolerance,
-                          options, received);
-            of_lamps.fetch_add(shot.cast(), std::memory_order_relaxed);
-        });
-        rays += of_lamps.load();
-    }
+    std::uint64_t rays =
+        cast_lamps(radiosity, lamps, receivers, which, tolerance, options, received);
     rays += cast_suns(radiosity, receivers, which, tolerance, options, received);
     received.note_seen();
     // The sky has no sharp shadows, and indoors it would hide what lamps and sun show of theirs.

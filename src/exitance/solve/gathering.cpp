@@ -247,7 +247,7 @@ void Gathering::balance_patches(double error, const std::function<bool()>& inter
     radiosity_.irradiance = direct_;
     indirect_.reset();
     reflected_.reset();
-    ReflectedLightOptions balancing{error, options_.column.seed, interrupted};
+    ReflectedLightOptions balancing{error, options_.column, interrupted};
     if (options_.memory) {
         balancing.most_rays =
             options_.memory->patch_rays(balancing.most_rays, radiosity_.mesh.vertices().size());

@@ -14,13 +14,6 @@ namespace {
 
 constexpr std::uint64_t luminaire_numbers = 0x1abULL;  // apart from those of elements and faces
 
-// A lamp on its way into the tree.
-struct Placed {
-    Lamp lamp;
-    Vec3 place;
-    std::size_t group;
-};
-
 std::size_t group_of(std::span<const float> row, const Columns& columns) {
     for (std::size_t c = 0; c < columns.count; ++c)
         if (row[c] != 0) return c / columns.bands;
@@ -29,7 +22,7 @@ std::size_t group_of(std::span<const float> row, const Columns& columns) {
 
 class Planter {
   public:
-    Planter(std::vector<Placed>& lamps, std::vector<Lamps::Branch>& branches)
+    Planter(std::vector<Lamps::Placed>& lamps, std::vector<Lamps::Branch>& branches)
         : lamps_(lamps), branches_(branches) {}
 
     void plant(std::size_t begin, std::size_t end) {
@@ -46,7 +39,7 @@ class Planter {
         const std::size_t half = (end - begin) / 2;
         std::nth_element(first, first + static_cast<std::ptrdiff_t>(half),
                          lamps_.begin() + static_cast<std::ptrdiff_t>(end),
-                         [&](const Placed& a, const Placed& b) {
+                         [&](const Lamps::Placed& a, const Lamps::Placed& b) {
                              const double x = a.place[axis], y = b.place[axis];
                              return x != y ? x < y : a.lamp.number < b.lamp.number;
                          });
@@ -56,7 +49,7 @@ class Planter {
     }
 
   private:
-    std::vector<Placed>& lamps_;
+    std::vector<Lamps::Placed>& lamps_;
     std::vector<Lamps::Branch>& branches_;
 };
 
@@ -79,8 +72,10 @@ std::vector<FaceId> emitters_of(const Radiosity& radiosity) {
     return emitters;
 }
 
-Lamps::Lamps(const Radiosity& radiosity, std::span<const FaceId> faces) {
-    std::vector<Placed> placed;
+namespace {
+
+std::vector<Lamps::Placed> placed_lamps(const Radiosity& radiosity, std::span<const FaceId> faces) {
+    std::vector<Lamps::Placed> placed;
     const auto place = [&](Lamp lamp, const Vec3& at) {
         lamp.level = radiosity.columns.luminance(lamp.emitted);
         if (lamp.level > 0) placed.push_back({lamp, at, group_of(lamp.emitted, radiosity.columns)});
@@ -101,7 +96,15 @@ Lamps::Lamps(const Radiosity& radiosity, std::span<const FaceId> faces) {
                .emitted = radiosity.emitted_by_luminaire(l),
                .number = static_cast<std::uint32_t>(hash_bits(luminaire_numbers, l))},
               radiosity.luminaires[l].luminaire().position);
+    return placed;
+}
 
+}  // namespace
+
+Lamps::Lamps(const Radiosity& radiosity, std::span<const FaceId> faces)
+    : Lamps(placed_lamps(radiosity, faces)) {}
+
+Lamps::Lamps(std::vector<Placed> placed) {
     std::stable_sort(placed.begin(), placed.end(),
                      [](const Placed& a, const Placed& b) { return a.group < b.group; });
     Planter planter(placed, branches_);

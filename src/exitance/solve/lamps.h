@@ -16,11 +16,11 @@ namespace exitance {
 /// The faces that emit, brightest first.
 std::vector<FaceId> emitters_of(const Radiosity& radiosity);
 
-/// A face or a luminaire that emits.
+/// A polygon or a luminaire that emits.
 struct Lamp {
-    FaceId face{};                               ///< if it is one
-    std::optional<Source> polygon{};             ///< of the face
-    const LuminaireSource* luminaire = nullptr;  ///< if it is no face
+    FaceId face{};                               ///< if the polygon is all of one
+    std::optional<Source> polygon{};             ///< as seen from its front
+    const LuminaireSource* luminaire = nullptr;  ///< if it is no polygon
     std::span<const float> emitted{};            ///< per column
     float level = 0;                             ///< luminance of `emitted`
     std::uint32_t number = 0;                    ///< decorrelates the samples
@@ -31,6 +31,13 @@ class Lamps {
     /// Of `faces` and all luminaires of the scene, which outlives this.
     Lamps(const Radiosity& radiosity, std::span<const FaceId> faces);
     explicit Lamps(const Radiosity& radiosity) : Lamps(radiosity, emitters_of(radiosity)) {}
+    /// A lamp and where it is. Lamps of different groups share nothing.
+    struct Placed {
+        Lamp lamp;
+        Vec3 place;
+        std::size_t group = 0;
+    };
+    explicit Lamps(std::vector<Placed> lamps);
 
     /// Neighbours are neighbours in here, too.
     std::span<const Lamp> all() const { return lamps_; }

@@ -6,10 +6,13 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "exitance/mesh/field.h"
 #include "exitance/solve/cast_light.h"
+#include "exitance/solve/lamps.h"
+#include "exitance/solve/patch_cells.h"
 #include "exitance/solve/patch_slopes.h"
 #include "exitance/solve/radiosity.h"
 #include "exitance/transport/element_caster.h"
@@ -17,8 +20,8 @@
 namespace exitance {
 
 struct ReflectedLightOptions {
-    double error = 0.02;  ///< RMS error of irradiance relative to its mean that is aimed at
-    std::uint64_t seed = 0;
+    double error = 0.02;     ///< RMS error of irradiance relative to its mean that is aimed at
+    ColumnOptions column{};  ///< of what is bright enough to be seen as lamps are
     std::function<bool()> interrupted{};
     std::uint32_t most_rays = 1024;  ///< of a patch in the balance
     /// R in cells takes no more than this; where rows are long, for many groups of light, it may.
@@ -63,34 +66,20 @@ class ReflectedLight {
 
   private:
     void balance();
-    void divide_into_cells();
-    void fill_cells();
-    void find_slopes(const Element& leaf, std::span<float> s, std::span<float> t) const;
-    const float* exitance_at(std::uint32_t patch, float u, float v) const;
 
     Radiosity& radiosity_;
     ReflectedLightOptions options_;
     ElementScene scene_;
     ElementRows rows_;
     PatchSlopes slopes_;
+    PatchCells cells_;
     ElementCaster caster_;
     RowField irradiance_;  ///< F R of patches
     std::vector<float>
         spread_;            ///< per patch: standard deviation of the luminance of R that it sees
     float unevenness_ = 1;  ///< deviation found by trial, relative to what the law says
-    /// R in cells of equal steps along a patch's two sides; in a triangle each is two triangles.
-    struct Cells {
-        std::uint32_t first = 0;  ///< row of `exitance_`
-        std::uint32_t steps = 1;
-        bool triangle = false;
-
-        std::size_t count() const { return std::size_t{steps} * steps * (triangle ? 2 : 1); }
-        std::size_t at(float x, float y) const;
-        template <class Visit>
-        void visit_those_of(const Element& leaf, const Element& root, const Visit& visit) const;
-    };
-    std::vector<Cells> cells_;
-    std::vector<float> exitance_;
+    std::optional<Lamps> bright_;  ///< taken out of the cells
+    float tolerance_ = 1;          ///< luminance of irradiance that gathers may miss
     std::uint64_t rays_ = 0;
 };
 
