@@ -418,7 +418,8 @@ TEST(Project, ErrorsNameThePlaceAndWhatWasExpected) {
     refused("[1, 0, 1], [1, 0, 0]]", "[1, 0, 0], [0, 0, 0], [1, 1, 1]]", "23:11",
             "found 5 corners");
     refused("[1, 0, 1], [1, 0, 0]]", "[1, 0, \"a\"], [1, 0, 0]]", "23:41", "the string 'a'");
-    refused("[1, 0, 1], [1, 0, 0]]", "[1, 0, 1e10], [1, 0, 0]]", "23:41", "a number");
+    refused("[1, 0, 1], [1, 0, 0]]", "[1, 0, 1e10], [1, 0, 0]]", "23:41",
+            "a number from -1e+09 to 1e+09");
     refused("shape = \"disc\"", "shape = \"cube\"", "31:9",
             "rectangle, disc, sphere, point or spot");
     refused("radius = 0.1", "radius = 0", "34:10", "a number from 1e-09 up");

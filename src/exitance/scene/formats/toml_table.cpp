@@ -38,9 +38,13 @@ std::string kind_of(const toml::node& node) {
     }
 }
 
-std::string range_text(double least, double most) {
-    if (most >= limits::coordinate && least <= -limits::coordinate) return "a number";
-    if (most >= limits::coordinate) return fmt::format("a number from {:g} up", least);
+// Ends that nobody meets are named to those who have gone beyond.
+std::string range_text(double least, double most, const std::optional<double>& found) {
+    const bool too_much = found && *found > most, too_little = found && *found < least;
+    if (!too_much && most >= limits::coordinate) {
+        if (!too_little && least <= -limits::coordinate) return "a number";
+        return fmt::format("a number from {:g} up", least);
+    }
     return fmt::format("a number from {:g} to {:g}", least, most);
 }
 
@@ -156,7 +160,7 @@ std::optional<double> TomlTable::number(const std::string& key, double least, do
     const toml::node* found = node(key);
     if (!found) return std::nullopt;
     const auto value = finite(*found);
-    if (!value || *value < least || *value > most) refuse(key, range_text(least, most));
+    if (!value || *value < least || *value > most) refuse(key, range_text(least, most, value));
     return value;
 }
 
@@ -186,7 +190,7 @@ std::vector<double> TomlTable::numbers_of(const toml::node& node, std::size_t si
         if (!value || *value < least || *value > most)
             throw Error(place_of(file_, element),
                         fmt::format("{}: found {}, expected {}", key, shown(element),
-                                    range_text(least, most)));
+                                    range_text(least, most, value)));
         out.push_back(*value);
     }
     return out;
@@ -212,7 +216,7 @@ std::optional<Spectrum> TomlTable::spectrum(const std::string& key, double least
     if (found->is_array()) return numbers_of(*found, 3, least, most, key);
     const auto value = finite(*found);
     if (!value || *value < least || *value > most)
-        refuse(key, range_text(least, most) + ", or three of them in brackets");
+        refuse(key, range_text(least, most, value) + ", or three of them in brackets");
     return Spectrum(3, *value);
 }
 
