@@ -305,6 +305,21 @@ bool is_looked_at(const Solution& kept, const Task& task, const Demand& demand) 
     return !demand.met_by(*kept.error, options) || (told && *told <= options.error);
 }
 
+// What held-out points say now of a solution that nothing is to be done for. It stays what it was
+// refined for, and what was not refined for one place is not called so.
+void judge(Solution& kept, const std::optional<ErrorEstimate>& found, bool same_weights,
+           const Task& task) {
+    const RefinedFor there = kept.refined_for.value_or(RefinedFor{});
+    const bool as_before = there.camera == task.options.view && there.grid == task.options.grid;
+    if (as_before || task.focus.empty()) {
+        kept.error = found, kept.refined_for = refined_for(task);
+    } else if (!same_weights) {
+        kept.error.reset();
+        if (!kept.refined_for)
+            kept.error = estimate_error(kept, task.options.seed, task.options.error);
+    }
+}
+
 // Takes the mesh of what is resumed over, and that itself as the best there is so far. Whether
 // there is nothing left to do.
 bool resume(Resumption& resumption, Radiosity& radiosity, const Task& task, Demand& demand) {
@@ -324,7 +339,7 @@ bool resume(Resumption& resumption, Radiosity& radiosity, const Task& task, Dema
     }
     resumption.outcome = Resumption::Outcome::kept;
     if (estimate && demand.met_by(*estimate, options)) {
-        kept.error = estimate, kept.refined_for = refined_for(task);
+        judge(kept, estimate, same_weights, task);
         resumption.outcome = Resumption::Outcome::sufficient;
         return true;
     }

@@ -192,8 +192,12 @@ Scene seen_room() {
 
 TEST(Resume, WhatWasRefinedForACameraIsJudgedAnewElsewhere) {
     const Scene scene = seen_room();
-    SolveOptions options = to_error(0.02);
-    options.view = "corner";
+    const auto to_error_for_camera = [](double error) {
+        SolveOptions options = to_error(error);
+        options.view = "corner";
+        return options;
+    };
+    SolveOptions options = to_error_for_camera(0.02);
     const Solution for_camera = light(scene, options);
     ASSERT_LE(for_camera.error->rms, 0.02);
     Resumption from{for_camera};
@@ -202,12 +206,21 @@ TEST(Resume, WhatWasRefinedForACameraIsJudgedAnewElsewhere) {
     EXPECT_FALSE(everywhere.refined_for);
     EXPECT_LE(everywhere.error->rms, 0.02);
 
-    // Which is good enough for the camera, too, or is made so.
+    // Which is good enough for the camera, too: nothing is refined, and so nothing is called so.
     Resumption back{everywhere};
-    const Solution again = resumed(scene, options, back);
-    ASSERT_TRUE(again.refined_for);
-    EXPECT_EQ(again.refined_for->camera, "corner");
-    EXPECT_LE(again.error->rms, 0.02);
+    const Solution again = resumed(scene, to_error_for_camera(0.05), back);
+    EXPECT_EQ(back.outcome, Outcome::sufficient);
+    EXPECT_FALSE(again.refined_for);
+    EXPECT_EQ(again.error->rms, everywhere.error->rms);
+    expect_same(again, everywhere);
+
+    // Or it is made so.
+    Resumption further{everywhere};
+    const Solution finer = resumed(scene, to_error_for_camera(0.002), further);
+    EXPECT_EQ(further.outcome, Outcome::improved);
+    ASSERT_TRUE(finer.refined_for);
+    EXPECT_EQ(finer.refined_for->camera, "corner");
+    EXPECT_LE(finer.error->rms, 0.002);
 
     // Without time it stays what it was, label and all.
     Resumption kept{for_camera};
