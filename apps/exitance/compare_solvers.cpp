@@ -57,10 +57,12 @@ std::string row(const SolveOptions& options, const Run& done, const Solution& re
     const auto transport = counters.find("transport_bytes");
     const double bytes =
         counters.at("bytes") + (transport == counters.end() ? 0.0 : transport->second);
-    return fmt::format("{:<13} {:<11} {:>7} {:>9} {:>8.2f} {:>9} {:>10.3f} {:>9.1f}\n",
+    const std::string error =
+        done.solution.error ? fmt::format("{:.2f}", 100 * done.solution.error->rms) : "-";
+    return fmt::format("{:<13} {:<11} {:>7} {:>9} {:>8.2f} {:>9} {:>8} {:>10.3f} {:>9.1f}\n",
                        solver_of(options), options.transport.value_or("on-the-fly"),
                        count("sweeps"), human_count(counters.at("rays")), done.cpu_seconds,
-                       count("residual"), 100 * rms_difference(done.solution, reference),
+                       count("residual"), error, 100 * rms_difference(done.solution, reference),
                        bytes / 1e6);
 }
 
@@ -72,7 +74,9 @@ std::string compare_solvers(const Scene& scene, const SolveOptions& options, con
     exact.transport.reset(), exact.min_area.reset();
     const Solution reference = run(scene, exact, cancel).solution;
     std::string table =
-        "solver        transport    sweeps      rays    CPU s  residual  RMS diff %        MB\n";
+        "solver        transport    sweeps      rays    CPU s  residual  error %  RMS diff %       "
+        " "
+        "MB\n";
     const auto add = [&](std::string_view solver, std::optional<std::string> transport) {
         if (cancel.requested()) return;
         SolveOptions one = options;

@@ -89,6 +89,7 @@ class ProradCommand {
             latest = std::move(so_far);
         };
         apply(display);
+        if (!reporting_.quiet) print_choice(options_);
         const auto finish = [&](const Solution& solution, bool stopped) {
             draw(*latest, display, picture);
             if (output_) write_solution(solution, *output_);
@@ -148,7 +149,7 @@ class ProradCommand {
         }
         given_.apply({});
         // What the original does: progressive refinement.
-        if (!options_.solver) options_.solver = "shooting";
+        if (!options_.solver && !goes_with_transport(options_)) options_.solver = "shooting";
         if (no_occlusion_) options_.occlusion = false;
     }
 

@@ -28,7 +28,7 @@ std::string SolutionReport::text() const {
         out += group.weight == 1 ? fmt::format("  {}\n", group.name)
                                  : fmt::format("  {}, dimmed to {:g}\n", group.name, group.weight);
 
-    const EnergyBalance& energy = solution_.energy;
+    const EnergyBalance energy = shown(solution_.energy);
     const auto flux = [&](double value) {
         return human_quantity(value, flux_unit(solution_.quantity));
     };

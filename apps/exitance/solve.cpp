@@ -26,6 +26,11 @@ namespace exitance::cli {
 
 namespace {
 
+constexpr Replies replies{"exitance: stopping, to keep what is solved; again to quit at once\n",
+                          "exitance: quit at once, nothing was written\n"};
+// What pages are shown is in the file already.
+constexpr Replies live_replies{replies.first, "exitance: quit at once\n"};
+
 class SolveCommand {
   public:
     explicit SolveCommand(CLI::App& command)
@@ -50,9 +55,12 @@ class SolveCommand {
                 "error: begins with its mesh, and returns it if nothing better is found; may be "
                 "the file of --output")
             ->type_name("file.glb");
-        command.add_flag("--compare", compare_,
-                         "solve by every solver and transport in turn and print a table instead: "
-                         "work, time, residual, difference from the converged solution, memory");
+        command.add_flag(
+            "--compare", compare_,
+            "solve by every solver and transport in turn and print a table instead: "
+            "work, time, residual, error by the solution's own held-out points, RMS "
+            "difference from the converged solution of even elements (which is not the "
+            "truth: what divides elements differs most), memory");
 #ifdef EXITANCE_VIEWER
         CLI::Option* view = command.get_option("--view");
         view->excludes("--compare")
@@ -104,7 +112,9 @@ class SolveCommand {
         }
         Resumption* const resumed = resumption ? &*resumption : nullptr;
 
-        const Interrupt interrupt;
+        if (!reporting_.quiet && !compare_) print_choice(options_);
+        const bool told = !reporting_.quiet && reporting_.log != "json";
+        const Interrupt interrupt(!told ? Replies{} : live ? live_replies : replies);
         if (compare_) {
             fmt::print("{}", compare_solvers(scene, options_, interrupt.cancel()));
             return;

@@ -25,7 +25,7 @@ std::string group_names(const Solution& solution) {
 }
 
 std::string energy_line(const Solution& solution) {
-    const EnergyBalance& energy = solution.energy;
+    const EnergyBalance energy = shown(solution.energy);
     const std::string unit = flux_unit(solution.quantity);
     if (energy.emitted <= 0) return "nothing is emitted";
     const auto share = [&](double part) { return human_percent(part / energy.emitted); };
@@ -45,7 +45,7 @@ double tolerable_imbalance(const Solution& solution) {
 }
 
 std::string balance_warning(const Solution& solution) {
-    const double off = solution.energy.imbalance();
+    const double off = shown(solution.energy).imbalance();
     // Where nobody looks light is left as it is.
     if (solution.refined_for) return "";
     if (!(std::abs(off) > tolerable_imbalance(solution))) return "";
@@ -60,6 +60,11 @@ std::string balance_warning(const Solution& solution) {
 
 }  // namespace
 
+EnergyBalance shown(EnergyBalance energy) {
+    energy.unshot = std::max(0.0, energy.unshot);
+    return energy;
+}
+
 void print_findings(const Scene& scene) {
     for (const Problem& note : scene.notes)
         std::fprintf(stderr, "note: %s: %s\n", note.place.text().c_str(), note.what.c_str());
@@ -69,6 +74,13 @@ void print_findings(const Scene& scene) {
         std::fprintf(stderr, "warning %zu: %s%s%s\n", ++number, place.c_str(),
                      place.empty() ? "" : ": ", warning.what.c_str());
     }
+}
+
+void print_choice(const SolveOptions& options) {
+    if (!goes_with_transport(options)) return;
+    require_possible(options);
+    fmt::print(stderr, "note: --transport {} is solved by --solver {}, for none was asked for\n",
+               *options.transport, solver_of(options));
 }
 
 void print_lit_anew(const std::filesystem::path& scene) {
@@ -95,7 +107,10 @@ std::string memory_text(const Solution& solution) {
     };
     std::string out;
     if (const auto vertices = counter("vertices_by_memory"))
-        out = fmt::format("elements were not divided beyond {} vertices", human_count(*vertices));
+        out = fmt::format(
+            "elements were not divided beyond a mesh of {} vertices (triangles add some in the "
+            "file)",
+            human_count(*vertices));
     if (const auto rays = counter("patch_rays_by_memory"))
         out += fmt::format("{}the balance had {} rays per patch", out.empty() ? "" : ", ",
                            human_count(*rays));

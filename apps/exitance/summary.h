@@ -9,6 +9,7 @@
 
 #include "exitance/scene/scene.h"
 #include "exitance/solution/solution.h"
+#include "exitance/solve/options.h"
 #include "reached_error.h"
 
 namespace exitance::cli {
@@ -19,8 +20,16 @@ inline constexpr const char* stopped_early = "stopped early; what is solved so f
 /// One line on stderr per thing that the readers took for granted, and per warning.
 void print_findings(const Scene& scene);
 
+/// A line on stderr if a solver is taken that is neither asked for nor the usual one. Throws as
+/// require_possible().
+void print_choice(const SolveOptions& options);
+
 /// A line on stderr where a scene's file might be taken for a solution.
 void print_lit_anew(const std::filesystem::path& scene);
+
+/// As people read it: light that was sent on although it is not there (unshot < 0) is no part of
+/// the sum, but of what is missing in it.
+EnergyBalance shown(EnergyBalance energy);
 
 /// "1.8 % ± 0.2 % (…)", or how large it may be where the points do not tell more.
 std::string error_text(const Solution& solution);

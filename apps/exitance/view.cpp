@@ -67,6 +67,7 @@ class ViewCommandLine {
             const Scene scene = read_scene(input_, read_options_);
             if (!reporting_.quiet) print_findings(scene), print_lit_anew(input_);
             given_.apply(scene.settings);
+            if (!reporting_.quiet) print_choice(options_);
             html_ ? write_page_of(scene) : serve(&scene);
         }
     }

@@ -48,6 +48,18 @@ def extras(path):
     return glb_json(path)["asset"]["extras"]["exitance"]
 
 
+def change_extras(path, **values):
+    """Writes the same file with other members there."""
+    file = glb_json(path)
+    file["asset"]["extras"]["exitance"].update(values)
+    text = json.dumps(file).encode()
+    text += b" " * (-len(text) % 4)
+    old = Path(path).read_bytes()
+    end = 20 + struct.unpack_from("<I", old, 12)[0]
+    data = struct.pack("<I4s", len(text), b"JSON") + text + old[end:]
+    Path(path).write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(data)) + data)
+
+
 class ProgramTest(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()

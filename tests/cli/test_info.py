@@ -6,7 +6,7 @@ import re
 import unittest
 from xml.etree import ElementTree
 
-from program import BAD_INPUT, COULD_NOT_FINISH, ROOT, WRONG_USE, ProgramTest, box
+from program import BAD_INPUT, COULD_NOT_FINISH, ROOT, WRONG_USE, ProgramTest, box, change_extras
 
 LAMP = """
 quantity = "photometric"
@@ -176,6 +176,15 @@ group = "office"
         facts = self.facts("box.glb")
         self.assertEqual(facts["kind"], "solution")
         self.assertAlmostEqual(facts["energy"]["emitted"], 0.4, places=6)
+
+    def test_no_light_is_less_than_none(self):
+        scene = self.write("box.geom", box())
+        self.succeed("solve", scene, "-o", "box.glb", "--error", "0.3")
+        path, energy = self.folder / "box.glb", self.facts("box.glb")["energy"]
+        for unshot, told in (-0.1, "escaped, 0 still unshot"), (0.1, "escaped, 0.1 still unshot"):
+            change_extras(path, energy=energy | {"unshot": unshot, "unit": ""})
+            self.assertIn(told, self.succeed("info", path).stdout)
+            self.assertEqual(self.facts(path)["energy"]["unshot"], unshot)
 
     def test_what_is_outside_or_beyond_memory_is_called_so(self):
         gltf = self.write("out.gltf", json.dumps(

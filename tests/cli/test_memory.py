@@ -26,7 +26,8 @@ class Memory(ProgramTest):
     def test_stays_below_the_limit_and_says_so(self):
         said, output, resident = self.solve("--error", "0.05", "--memory", "100")
         self.assertLess(resident, 100)
-        self.assertRegex(said, r"memory +elements were not divided beyond [0-9. k]+ vertices: "
+        self.assertRegex(said, r"memory +elements were not divided beyond a mesh of [0-9. k]+ vertices "
+                               r"\(triangles add some in the file\): "
                                r"--memory 100 MB has room for no more")
         found = extras(output)
         self.assertEqual(found["options"]["memory"], "100")

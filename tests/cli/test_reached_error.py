@@ -2,10 +2,9 @@
 """exitance solve --error: what has not come to it says so, and why; so does info of the file."""
 import json
 import signal
-import struct
 import unittest
 
-from program import BAD_INPUT, ROOT, ProgramTest, box, extras, glb_json
+from program import BAD_INPUT, ROOT, ProgramTest, box, change_extras, extras
 
 CORNELL = ROOT / "scenes/cornell.toml"
 MISSED = r"the error aimed at, {}, is not reached: {}"
@@ -31,15 +30,7 @@ class ReachedError(ProgramTest):
         return json.loads(self.succeed("info", "--json", self.output).stdout)
 
     def change(self, **values):
-        """The same file with other extras."""
-        file = glb_json(self.output)
-        file["asset"]["extras"]["exitance"].update(values)
-        text = json.dumps(file).encode()
-        text += b" " * (-len(text) % 4)
-        old = self.output.read_bytes()
-        end = 20 + struct.unpack_from("<I", old, 12)[0]
-        data = struct.pack("<I4s", len(text), b"JSON") + text + old[end:]
-        self.output.write_bytes(struct.pack("<4sII", b"glTF", 2, 12 + len(data)) + data)
+        change_extras(self.output, **values)
 
     def test_reached(self):
         self.assertNotIn("warning", self.solve("--error", "0.1"))

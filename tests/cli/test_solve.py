@@ -7,6 +7,7 @@ import pty
 import signal
 import struct
 import termios
+import time
 import unittest
 
 from program import (BAD_INPUT, COULD_NOT_FINISH, PROGRAM, ROOT, WRONG_USE, ProgramTest, box, extras,
@@ -31,6 +32,7 @@ class Solve(ProgramTest):
         self.assertEqual(done.stderr, "")
         self.assertRegex(done.stdout, r"box\.glb: \d+ vertices, \d+ triangles, light groups: ")
         self.assertRegex(done.stdout, r"energy .* emitted = .* absorbed .* escaped .* unshot")
+        self.assertNotRegex(done.stdout, "\\+ -")
         self.assertRegex(done.stdout, r"error .* % ± .* % \(RMS of irradiance")
         self.assertRegex(done.stdout, r"work +[0-9.]+ [kMG]? ?rays, .* s\n")
         # A lamp of 0.2 m × 0.2 m and 10 per square metre.
@@ -71,6 +73,18 @@ position = [0, HEIGHT, 0]
             self.assertEqual((used["solver"], used["vertices"]), (solver, "average"))
             self.assertGreater(extras(self.output)["counters"]["rows"], 10)
 
+    def test_a_transport_alone_takes_a_solver_and_says_which(self):
+        for transport in ("dense", "sparse", "links", "stochastic"):
+            done = self.solve("--error", "0.3", "--transport", transport)
+            self.assertEqual(done.stderr, f"note: --transport {transport} is solved by --solver "
+                                          "jacobi, for none was asked for\n")
+            used = extras(self.output)["options"]
+            self.assertEqual((used["solver"], used["transport"]), ("jacobi", transport))
+        for more in ("--quiet",), ("--solver", "jacobi"):
+            self.assertEqual(self.solve(*QUICK, "--transport", "links", *more).stderr, "")
+        self.assertEqual(self.solve(*QUICK, "--transport", "on-the-fly").stderr, "")
+        self.assertEqual(extras(self.output)["options"]["solver"], "gathering")
+
     def two_plates(self, *arguments):
         """Rows of the log: sweep, residual, unshot, seconds, B of ceiling and floor."""
         scene = ROOT / "scenes/two_plates.toml"
@@ -98,7 +112,7 @@ position = [0, HEIGHT, 0]
         done = self.succeed("solve", self.scene, "--compare", "--error", "0.2", "--transport",
                             "sparse")
         head, *lines = done.stdout.splitlines()
-        self.assertRegex(head, "solver +transport +sweeps +rays +CPU s +residual +RMS diff % +MB")
+        self.assertRegex(head, "solver +transport +sweeps +rays +CPU s +residual +error % +RMS diff % +MB")
         self.assertEqual([line.split()[:2] for line in lines],
                          [[name, "sparse"] for name in
                           ("jacobi", "gauss-seidel", "southwell", "krylov", "stochastic")])
@@ -120,8 +134,14 @@ position = [0, HEIGHT, 0]
     def test_refuses_what_cannot_be_had_together(self):
         output = ("-o", self.output)
         for message, *arguments in (
-                (r"--transport dense cannot .* gathering: .* divides .* southwell",
-                 "--transport", "dense"),
+                (r"--transport links cannot .* gathering, .* expected --solver jacobi, gauss-seidel, "
+                 "southwell or krylov", "--transport", "links", "--solver", "gathering"),
+                (r"--transport stochastic cannot .* shooting, .* expected --solver jacobi or "
+                 "stochastic", "--transport", "stochastic", "--solver", "shooting"),
+                (r"--memory cannot .* jacobi \(for --transport links\), .* gathering",
+                 "--transport", "links", "--memory", "500"),
+                (r"--no-occlusion cannot .* jacobi \(for --transport dense\): .* shooting",
+                 "--transport", "dense", "--no-occlusion"),
                 (r"--vertices cannot .* gathering, .* expected .* jacobi", "--vertices", "gather"),
                 (r"--element-rays cannot .* gathering", "--element-rays", "64"),
                 (r"--factors cannot .* gathering", "--factors", "pairs"),
@@ -131,7 +151,7 @@ position = [0, HEIGHT, 0]
                  "--solver", "krylov", "--min-area", "0.01"),
                 (r"--transport stochastic cannot .* krylov, .* expected --solver jacobi or stochastic",
                  "--solver", "krylov", "--transport", "stochastic"),
-                (r"--transport links cannot .* stochastic: a sample .* expected .* jacobi",
+                (r"--transport links cannot .* stochastic: a sample .* expected --solver jacobi, .*krylov",
                  "--solver", "stochastic", "--transport", "links"),
                 (r"--factors cannot .* links, which has no matrix; expected dense or sparse",
                  "--solver", "jacobi", "--transport", "links", "--factors", "pairs"),
@@ -237,6 +257,33 @@ position = [0, HEIGHT, 0]
                 self.assertGreater(extras(self.output)["energy"]["unshot"], 0)
                 self.succeed("info", self.output)
                 self.output.unlink()
+
+    def test_interrupt_is_heard_at_once(self):
+        self.write("box.geom", box(patches=SHOTS_OF_LONG // 6))
+        heard = "exitance: stopping, to keep what is solved; again to quit at once\n"
+        for arguments, lines in ((), (heard,)), (("--quiet",), ()):
+            with self.subTest(arguments=arguments):
+                process = self.start("solve", self.scene, "-o", self.output, *LONG, *arguments)
+                time.sleep(0.3)  # reading is done in a hundredth; if not, it would end at once
+                process.send_signal(signal.SIGINT)
+                out, err = process.communicate(timeout=60)
+                self.assertEqual(process.returncode, 0, err)
+                self.assertEqual(err.splitlines(keepends=True), list(lines))
+                self.output.unlink()
+
+    def test_a_second_interrupt_writes_nothing(self):
+        # A scene of which one step takes longer than it takes to send two signals.
+        self.write("box.geom", box(patches=40_000))
+        process = self.start("solve", self.scene, "-o", self.output, "--error", "0.01", "--solver",
+                             "jacobi", "--transport", "sparse", "--element-size", "0.005")
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+        self.assertEqual(err, "exitance: quit at once, nothing was written\n")
+        self.assertEqual(process.returncode, -signal.SIGINT)
+        self.assertFalse(self.output.exists())
 
     def test_time_limit(self):
         self.write("box.geom", box(patches=SHOTS_OF_LONG // 6))

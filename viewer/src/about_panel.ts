@@ -20,7 +20,7 @@ export function aboutPanel(viewer: Viewer): HTMLElement {
         'RMS of irradiance over its mean, at points that the solver did not see'),
       line('Absorbed', share(energy.absorbed + energy.absorbed_behind), 'of the light emitted'),
       line('Escaped', share(energy.escaped)),
-      line('Unshot', share(energy.unshot)))
+      line('Unshot', share(Math.max(0, energy.unshot))))
   }
   viewer.addEventListener('solution', refresh)
   refresh()

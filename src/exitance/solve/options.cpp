@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "exitance/solve/options.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "exitance/run/error.h"
 #include "exitance/solve/element_methods.h"
 
@@ -40,8 +43,9 @@ Options describe(SolveOptions& o) {
          "how the system is solved: gathering = a rough balance on stored ray hits and one "
          "gathering step where light needs it, shooting = progressive refinement; both divide "
          "elements where light needs it; the others are for one exitance per element; default: "
-         "gathering, or shooting where --unshot, --next-shot, --no-overshoot, --no-occlusion or "
-         "--form-factor disk ask for it",
+         "gathering, jacobi where a --transport other than on-the-fly asks for it, or shooting "
+         "where "
+         "--unshot, --next-shot, --no-overshoot, --no-occlusion or --form-factor disk do",
          "", 0, 0, solver_names()},
         {"transport",
          &o.transport,
@@ -125,8 +129,13 @@ bool asks_for_shooting(const SolveOptions& o) {
 }  // namespace
 
 std::string solver_of(const SolveOptions& options) {
-    return options.solver.value_or(
-        std::string(asks_for_shooting(options) ? adaptive_shooting : adaptive_gathering));
+    if (options.solver) return *options.solver;
+    if (goes_with_transport(options)) return "jacobi";  // which every transport goes with
+    return std::string(asks_for_shooting(options) ? adaptive_shooting : adaptive_gathering);
+}
+
+bool goes_with_transport(const SolveOptions& options) {
+    return !options.solver && options.transport && *options.transport != "on-the-fly";
 }
 
 bool by_elements(const SolveOptions& options) {
@@ -141,19 +150,35 @@ bool of_elements(const std::string& option) {
 
 namespace {
 
+// As messages name it.
+std::string solver_text(const SolveOptions& o) {
+    return "--solver " + solver_of(o) +
+           (goes_with_transport(o) ? " (for --transport " + *o.transport + ")" : "");
+}
+
+// "--solver jacobi or stochastic"
+std::string solvers_for(const std::string& transport) {
+    std::vector<std::string> names;
+    for (const ElementMethod& method : element_methods())
+        if (go_together(method, transport)) names.emplace_back(method.name);
+    const std::string last = names.back();
+    names.pop_back();
+    return fmt::format("--solver {} or {}", fmt::join(names, ", "), last);
+}
+
 // Others do not know what matters to whom.
 void require_focus_possible(const SolveOptions& o) {
     const std::string solver = solver_of(o);
     if ((!o.view && !o.grid) || solver == adaptive_gathering) return;
     refuse(std::string(o.view ? "--view " + *o.view : "--grid " + *o.grid) +
-           " cannot be had with --solver " + solver +
+           " cannot be had with " + solver_text(o) +
            ", which refines for all places alike; expected --solver gathering");
 }
 
 // Others hold what they need at once.
 void require_memory_possible(const SolveOptions& o) {
     if (!o.memory || solver_of(o) == adaptive_gathering) return;
-    refuse("--memory cannot be had with --solver " + solver_of(o) +
+    refuse("--memory cannot be had with " + solver_text(o) +
            ", which cannot do with less than its elements and form factors take; expected "
            "--solver gathering");
 }
@@ -164,8 +189,7 @@ void require_adaptive(const SolveOptions& o) {
     const std::string elements = "; expected a solver of elements, as --solver jacobi";
     if (o.transport && *o.transport != "on-the-fly")
         refuse("--transport " + *o.transport + with +
-               ": it divides elements while it works, which a stored matrix knows nothing of; "
-               "expected on-the-fly, or --solver southwell, which is shooting with a matrix");
+               ", which holds no form factors of elements; expected " + solvers_for(*o.transport));
     if (o.factors) refuse("--factors" + with + ", which has no matrix of elements" + elements);
     if (o.vertices)
         refuse("--vertices" + with + ", which solves for the vertices themselves" + elements);
@@ -189,18 +213,16 @@ void require_possible(const SolveOptions& o) {
     require_focus_possible(o);
     require_memory_possible(o);
     if (!by_elements(o)) return require_adaptive(o);
-    const std::string solver = solver_of(o), with = " cannot be had with --solver " + solver;
+    const std::string solver = solver_of(o), with = " cannot be had with " + solver_text(o);
     const bool links = o.transport == "links";
     if (o.min_area && !links)
         refuse("--min-area" + with +
                ": its elements stay as they are; expected --element-size, or --transport links");
     if (o.transport && !go_together(element_method(solver), *o.transport))
         refuse("--transport " + *o.transport + with +
-               (links
-                    ? ": a sample of its rows costs more than a whole product over links; expected "
-                      "another solver, as --solver jacobi"
-                    : ", which needs the same operator in every step; expected --solver jacobi or "
-                      "stochastic"));
+               (links ? ": a sample of its rows costs more than a whole product over links"
+                      : ", which needs the same operator in every step") +
+               "; expected " + solvers_for(*o.transport));
     if (o.factors && (links || o.transport == "stochastic"))
         refuse("--factors cannot be had with --transport " + *o.transport +
                ", which has no matrix; expected dense or sparse");
@@ -219,7 +241,7 @@ void require_possible(const SolveOptions& o) {
 
 void require_resumable(const SolveOptions& o) {
     if (solver_of(o) == adaptive_gathering) return;
-    refuse("--resume cannot be had with --solver " + solver_of(o) +
+    refuse("--resume cannot be had with " + solver_text(o) +
            ": what is still to be distributed is not in a file; expected --solver gathering");
 }
 

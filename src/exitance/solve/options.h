@@ -40,9 +40,12 @@ struct SolveOptions {
 /// through the result.
 Options describe(SolveOptions& options);
 
-/// The solver that was asked for; by default gathering, or shooting where an option asks for what
-/// only it does.
+/// The solver that was asked for; by default gathering, jacobi where a transport asks for elements,
+/// or shooting where an option asks for what only it does.
 std::string solver_of(const SolveOptions& options);
+
+/// Whether no solver was asked for, and the transport decides on one.
+bool goes_with_transport(const SolveOptions& options);
 
 /// Whether the solver is one of those for one exitance per element (element_methods.h).
 bool by_elements(const SolveOptions& options);
