@@ -46,9 +46,13 @@ std::string reason(const Solution& solution, Ended ended) {
         return "there was no memory for more; give it more --memory, or refine only what a "
                "--view or --grid needs";
     if (const std::string area = option(solution, "min-area"); !area.empty())
-        return fmt::format("--min-area {} m² lets no smaller elements be", area);
-    return "smaller elements made it no better; exitance info tells what may be wrong with the "
-           "scene, as lamps that touch something";
+        return fmt::format(
+            "elements were not divided below --min-area {} m²; a smaller one or a smaller "
+            "--patch-size may help",
+            area);
+    // Where a lamp lights little that lights the rest, that much sends the light of all.
+    return "smaller elements made it no better; a smaller --patch-size may, for patches are what "
+           "sends light on, and exitance info tells what may be wrong with the scene";
 }
 
 }  // namespace

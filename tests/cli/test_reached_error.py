@@ -77,7 +77,7 @@ class ReachedError(ProgramTest):
         room = self.write("box.geom", box())
         for reason, *arguments in (
                 ("--no-adaptive forbids", "--no-adaptive"),
-                (r"--min-area 1 m² lets no smaller", "--min-area", "1"),
+                (r"elements were not divided below --min-area 1 m²; a smaller one", "--min-area", "1"),
                 (r"--unshot 0\.3 ended the work; --error alone", "--unshot", "0.3"),
                 (r"--next-shot 0\.01 ended the work", "--next-shot", "0.01"),
                 ("--solver jacobi ends when .* smaller --element-size", "--solver", "jacobi",
@@ -85,6 +85,35 @@ class ReachedError(ProgramTest):
             with self.subTest(arguments=arguments):
                 said = self.solve("--error", "0.01", *arguments, scene=room)
                 self.expect_missed(said, "1 %", reason)
+
+    def test_more_that_did_not_help(self):
+        # Two carpets of different colour in one place: rays meet either, whatever the mesh.
+        room = """[[material]]
+name = "white"
+reflectance = 0.7
+[[material]]
+name = "black"
+reflectance = 0
+[[polygon]]
+material = "white"
+corners = [[0, 0, 0], [0, 0, 3], [3, 0, 3], [3, 0, 0]]
+[[polygon]]
+material = "black"
+corners = [[0, 0, 1], [0, 0, 3], [3, 0, 3], [3, 0, 1]]
+[[polygon]]
+material = "white"
+corners = [[0, 0, 0], [3, 0, 0], [3, 3, 0], [0, 3, 0]]
+[[luminaire]]
+name = "lamp"
+shape = "rectangle"
+position = [1.5, 2, 1.5]
+aim = [0, -1, 0]
+width = 0.5
+height = 0.5
+lumens = 1000
+"""
+        said = self.solve("--error", "0.005", scene=self.write("carpets.toml", room))
+        self.expect_missed(said, "0.5 %", "smaller elements made it no better; .* --patch-size")
 
     def test_memory_is_told_once(self):
         said = self.solve("--error", "0.02", "--memory", "90", scene=ROOT / "scenes/office.toml")
