@@ -231,13 +231,26 @@ std::optional<ErrorEstimate> sum_up(const HeldOut& held, double mean_reflectance
         const double expected = held.stands[i] * held.shown[i] / held.worth[i] * square;
         spread += (squares[i] - expected) * (squares[i] - expected);
     }
-    const double repeated = (bias + brought) / (1.0 - std::min(mean_reflectance, 0.99));
-    const double total = std::max(0.0, square - bias * bias) + repeated * repeated;
+    // Every reflection repeats the mean error. It is known from some points only, which says too
+    // much of its square by its variance, and is most of the doubt where much is reflected.
+    const double times = 1.0 / (1.0 - std::min(mean_reflectance, 0.99));
+    const double repeated = times * (bias + brought);
+    double of_bias = 0, of_repeated = 0, of_both = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double off = 0.5 * (held.off[i][0] + held.off[i][1]);
+        const double b = held.stands[i] * held.shown[i] * (off - bias) / all_shown;
+        const double r = times * (held.stands[i] * (off - bias) / all_shown - brought / double(n));
+        const double both = 2 * (repeated * r - bias * b);
+        of_bias += b * b, of_repeated += r * r, of_both += both * both;
+    }
+    const double more = of_repeated - of_bias;
+    const double total = std::max(0.0, square + repeated * repeated - bias * bias - more);
     ErrorEstimate out;
     out.points = static_cast<std::uint32_t>(n);
     out.rms = std::sqrt(total) / mean;
     // d√x = dx / 2√x; `spread` / n² is the variance of the mean square.
-    const double deviation = std::sqrt(spread) / looked_at / (mean * mean);
+    const double deviation =
+        std::sqrt(spread / (looked_at * looked_at) + of_both + 2 * more * more) / (mean * mean);
     out.confidence = out.rms > 0 ? deviation / (2 * out.rms) : std::sqrt(deviation);
     return out;
 }

@@ -19,7 +19,8 @@ struct TriangleImportance {
 /// RMS error of irradiance (luminance) relative to its mean, from points that the mesh does not
 /// know: at each, what the surface says is compared with two independent gathers over the
 /// hemisphere. The product of the two differences is free of the gathers' own noise. The mean
-/// difference, which every further bounce repeats, is counted 1/(1-ρ) times over. nullopt if no
+/// difference, which every further bounce repeats, is counted 1/(1-ρ) times over, and so is the
+/// doubt about it. nullopt if no
 /// surface receives light. `seed` picks points and rays, of which there are as many as it takes to
 /// tell an error like `about` well. With an `importance`, errors count times what is shown of them
 /// there, and what others bring there on average is added by their echo instead.
