@@ -5,14 +5,15 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <ostream>
 
-#include "exitance/math/box.h"
 #include "exitance/run/atomic_file.h"
 #include "exitance/solution/file.h"
+#include "exitance/solution/file_colours.h"
 #include "exitance/solution/file_extras.h"
 #include "exitance/solution/file_layout.h"
+#include "exitance/solution/file_nodes.h"
+#include "exitance/solution/file_sink.h"
 #include "exitance/solution/file_textures.h"
 #include "exitance/solution/glb.h"
 #include "exitance/solution/preview.h"
@@ -44,46 +45,11 @@ struct View {
     int target = 0;
 };
 
-[[noreturn]] void not_finite(const std::string& what) {
-    throw Error(Fault::could_not_finish, "the solution holds a value that is not finite: " + what);
-}
-
 void demand_finite(const json& value, const std::string& path) {
     if (value.is_number_float() && !std::isfinite(value.get<double>())) not_finite(path);
     if (value.is_structured())
         for (const auto& [key, entry] : value.items()) demand_finite(entry, path + "." + key);
 }
-
-/// Collects small writes; checks that what leaves is finite.
-class Sink {
-  public:
-    explicit Sink(std::ostream& out) : out_(&out) { buffer_.reserve(capacity); }
-    ~Sink() { flush(); }
-    Sink(const Sink&) = delete;
-    Sink& operator=(const Sink&) = delete;
-
-    template <class T>
-    void put(T value) {
-        if constexpr (std::is_floating_point_v<T>)
-            if (!std::isfinite(value)) not_finite("a vertex or an emitter");
-        if (buffer_.size() + sizeof value > capacity) flush();
-        const auto* bytes = reinterpret_cast<const char*>(&value);
-        buffer_.insert(buffer_.end(), bytes, bytes + sizeof value);
-    }
-    template <class T>
-    void put(const Vector3<T>& v) {
-        put(v.x), put(v.y), put(v.z);
-    }
-
-  private:
-    void flush() {
-        out_->write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
-        buffer_.clear();
-    }
-    static constexpr std::size_t capacity = 1 << 20;
-    std::ostream* out_;
-    std::vector<char> buffer_;
-};
 
 class Writer {
   public:
@@ -107,7 +73,6 @@ class Writer {
     std::size_t vertices_ = 0;
     std::vector<View> views_;
     std::uint64_t size_ = 0;
-    Spectrum luminance_ = luminance_weights(s_.bands.size());
     std::vector<Vec3f> colours_;  ///< of the preview, in the order of the file
 
     void group_parts() {
@@ -187,13 +152,6 @@ class Writer {
         return !s_.texture_coordinates.empty() && s_.materials[p.material].patterned();
     }
 
-    /// What viewers multiply with the vertex colours; of two, the emission's, which outshines.
-    const Pattern* shown_pattern(const Material& material) const {
-        if (s_.texture_coordinates.empty()) return nullptr;
-        if (material.exitance_pattern) return &material.exitance_pattern;
-        return material.reflectance_pattern ? &material.reflectance_pattern : nullptr;
-    }
-
     /// `value(column)` of the up to three columns that attribute `a` carries, the rest zero.
     template <class Value>
     Vec3f three_of(std::size_t a, const Value& value) const {
@@ -208,41 +166,6 @@ class Writer {
     Vec3f three_exitances(const Primitive& p, std::uint32_t vertex, std::size_t a) const {
         const SolutionPart& part = s_.parts[p.parts[0]];
         return three_of(a, [&](std::size_t c) { return s_.exitance(vertex, part, c); });
-    }
-
-    /// Weighted sum of the groups' exitances as linear RGB; grey where bands are not R, G, B.
-    Vec3f total_rgb(const Primitive& p, std::uint32_t vertex) const {
-        const SolutionPart& part = s_.parts[p.parts[0]];
-        const std::size_t bands = s_.bands.size();
-        Vec3 rgb;
-        for (std::size_t g = 0; g < s_.groups.size(); ++g)
-            for (std::size_t b = 0; b < bands; ++b) {
-                const double B =
-                    s_.groups[g].weight * double(s_.exitance(vertex, part, g * bands + b));
-                if (bands == 3)
-                    rgb[b] += B;
-                else
-                    rgb += Vec3{B, B, B} * luminance_[b];
-            }
-        return Vec3f(rgb);
-    }
-
-    /// The same where the texture that viewers show is white.
-    Vec3f brightest_rgb(const Primitive& p, std::uint32_t vertex) const {
-        const Material& material = s_.materials[p.material];
-        const Pattern* shown = shown_pattern(material);
-        if (!shown) return total_rgb(p, vertex);
-        Vec3 rgb;
-        const std::uint32_t lit = s_.parts[p.parts[0]].group;
-        for (std::size_t b = 0; b < 3; ++b) {
-            const bool reflects = shown == &material.reflectance_pattern;
-            const double rho = reflects ? shown->factor[b] : material.reflectance[b];
-            for (std::size_t g = 0; g < s_.groups.size(); ++g)
-                rgb[b] +=
-                    s_.groups[g].weight * rho * double(s_.irradiance[VertexId(vertex)][g * 3 + b]);
-            rgb[b] += s_.groups[lit].weight * (reflects ? material.exitance[b] : shown->factor[b]);
-        }
-        return Vec3f(rgb);
     }
 
     template <class Body>
@@ -261,13 +184,14 @@ class Writer {
         std::vector<float> areas;
         colours_.reserve(vertices_), areas.reserve(vertices_);
         for_each_vertex([&](const Primitive& primitive, std::uint32_t vertex) {
-            colours_.push_back(total_rgb(primitive, vertex));
+            colours_.push_back(total_rgb(s_, s_.parts[primitive.parts[0]], vertex));
             areas.push_back(area_of_vertex[vertex]);
         });
         const PreviewTone tone = preview_tone(colours_, areas);
         std::size_t at = 0;
         for_each_vertex([&](const Primitive& primitive, std::uint32_t vertex) {
-            if (is_patterned(primitive)) colours_[at] = brightest_rgb(primitive, vertex);
+            if (is_patterned(primitive))
+                colours_[at] = brightest_rgb(s_, s_.parts[primitive.parts[0]], vertex);
             ++at;
         });
         for (Vec3f& colour : colours_) colour = tone(colour);
@@ -353,7 +277,7 @@ class Writer {
             };
             number(material.reflectance_pattern, "reflectance_pattern");
             number(material.exitance_pattern, "exitance_pattern");
-            if (const Pattern* shown = shown_pattern(material))
+            if (const Pattern* shown = shown_pattern(s_, material))
                 entry["pbrMetallicRoughness"]["baseColorTexture"] = {
                     {"index", textures_.index(*shown->texture)},
                     {"texCoord", shown == &material.exitance_pattern ? 1 : 0}};
@@ -362,40 +286,6 @@ class Writer {
         if (!textures_.images().empty() && !primitives_.empty())
             textures_.describe(gltf, first_image_);
         if (!s_.materials.empty()) gltf["extensionsUsed"] = {"KHR_materials_unlit"};
-    }
-
-    /// glTF cameras look along −z of their node.
-    void describe_cameras(json& gltf) const {
-        Box box;
-        for (const Vec3f& p : s_.positions) box.add(Vec3(p));
-        for (const Camera& camera : s_.cameras) {
-            const Vec3 back = normalized(camera.eye - camera.look_at);
-            const Vec3 right = normalized(cross(camera.up, back));
-            const Vec3 up = cross(back, right);
-            if (!(length(right) > 0) || !(camera.fov_y > 0 && camera.fov_y < 180)) continue;
-            json perspective{
-                {"yfov", camera.fov_y * std::numbers::pi / 180},
-                {"znear", camera.near.value_or(std::max(1e-3 * box.diagonal(), 1e-6))}};
-            if (camera.aspect) perspective["aspectRatio"] = *camera.aspect;
-            if (camera.far) perspective["zfar"] = *camera.far;
-            gltf["nodes"].push_back(
-                {{"name", camera.name},
-                 {"camera", gltf["cameras"].size()},
-                 {"matrix",
-                  {right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0,
-                   camera.eye.x, camera.eye.y, camera.eye.z, 1}}});
-            gltf["cameras"].push_back(
-                {{"name", camera.name}, {"type", "perspective"}, {"perspective", perspective}});
-        }
-    }
-
-    /// Viewers of glTF have +y up: the quaternion that turns `up` there; nothing if it is there.
-    static std::optional<std::array<double, 4>> upright(const Vec3& up) {
-        const Vec3 from = normalized(up), axis = cross(from, {0, 1, 0});
-        if (from.y > 1 - 1e-12) return std::nullopt;
-        if (from.y < -1 + 1e-12) return std::array{1.0, 0.0, 0.0, 0.0};
-        const double w = 1 + from.y, norm = std::sqrt(w * w + dot(axis, axis));
-        return std::array{axis.x / norm, axis.y / norm, axis.z / norm, w / norm};
     }
 
     std::string description() const {
@@ -412,19 +302,8 @@ class Writer {
                     {"extras", {{"exitance", std::move(extras)}}}}}};
         if (!primitives_.empty()) describe_mesh(gltf);
         describe_materials(gltf);
-        describe_cameras(gltf);
-        if (gltf.contains("nodes")) {
-            json all = json::array();
-            for (std::size_t i = 0; i < gltf["nodes"].size(); ++i) all.push_back(i);
-            if (const auto rotation = upright(s_.up)) {
-                const std::size_t root = gltf["nodes"].size();
-                gltf["nodes"].push_back(
-                    {{"name", "upright"}, {"rotation", *rotation}, {"children", all}});
-                all = {root};
-            }
-            gltf["scenes"] = {{{"nodes", all}}};
-            gltf["scene"] = 0;
-        }
+        describe_cameras(s_, gltf);
+        stand_upright(s_.up, gltf);
         if (size_) gltf["buffers"] = {{{"byteLength", size_}}};
         for (const View& view : views_) {
             json entry{{"name", view.name}, {"buffer", 0}, {"byteLength", view.bytes}};
